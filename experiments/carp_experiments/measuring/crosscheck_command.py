@@ -1,7 +1,6 @@
 """`carproof dev crosscheck`: the optimised planner against the reference."""
 
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 import click
@@ -11,9 +10,8 @@ from carp_experiments.measuring.crosscheck import Difference, first_difference
 from carp_spec.documents.instances import instance_document
 from carp_spec.documents.solutions import solution_document
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import hypothesis_elsewhere, print_document
-from carproof.command_line.options import examples, json_option, output_option
-from carproof.command_line.output import write_result
+from carproof.command_line.files import Output, hypothesis_elsewhere, print_document
+from carproof.command_line.options import examples, output_options
 from carproof.command_line.tables import print_line
 from carproof.extras import require
 from carproof.progress import progress
@@ -25,9 +23,8 @@ from carproof.progress import progress
 )
 @click.option("--examples", "count", type=click.IntRange(min=1), default=1000, help="The number of random questions.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, help="The seed of the questions.")
-@output_option
-@json_option
-def command(count: int, seed: int, output: Path | None, as_json: bool) -> Answer:
+@output_options
+def command(count: int, seed: int, output: Output) -> Answer:
     """Ask both engines the same questions, and stop at the first difference.
 
     Random instances are planned by every planner that both engines have, and robots are added to fleets under way. A
@@ -39,10 +36,9 @@ def command(count: int, seed: int, output: Path | None, as_json: bool) -> Answer
     with hypothesis_elsewhere(), progress("asking both engines", count) as advance:
         difference = first_difference(count, seed, advance)
     written = msgspec.json.encode(document(difference)) + b"\n"
-    write_result(written, output, as_json)
-    if not as_json:
+    if output.write(written):
         print_line(f"{count} questions: " + ("no difference" if difference is None else "A DIFFERENCE"))
-        if difference is not None and output is None:
+        if difference is not None and output.file is None:
             print_document(written)
     return Answer.of(difference is None)
 

@@ -5,6 +5,7 @@ import secrets
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
@@ -182,6 +183,22 @@ def _replace(path: Path, data: bytes) -> None:
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """Where the document of a command goes: to a file, if one is given, and to standard output, if it is asked for."""
+
+    file: Path | None
+    as_json: bool
+
+    def write(self, document: bytes) -> bool:
+        """Write the document; returns whether people are to get text as well."""
+        if self.file is not None:
+            write_whole(self.file, document)
+        if self.as_json:
+            print_document(document)
+        return not self.as_json
 
 
 def print_document(data: bytes) -> None:

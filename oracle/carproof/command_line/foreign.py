@@ -104,6 +104,11 @@ class Problem:
 
     def read(self, *, as_named: bool = False) -> tuple[Instance, Solution]:
         """Read both; `as_named`: robots of a benchmark, which has no names for them, get the names in the solution."""
+        instance, solution, _ = self.read_with_format(as_named=as_named)
+        return instance, solution
+
+    def read_with_format(self, *, as_named: bool = False) -> tuple[Instance, Solution, str]:
+        """The same with the format of the solution."""
         refuse_two_standard_inputs(*self.names)
         instance = self.read_instance()
         assert self.solution is not None  # noqa: S101 - it is asked only where there is one
@@ -111,7 +116,7 @@ class Problem:
         format = self.format or format_of(data, instance, file)
         if as_named and self.benchmark:
             instance = named_as(instance, format)
-        return instance, read_foreign_solution(data, instance, file, format)
+        return instance, read_foreign_solution(data, instance, file, format), format
 
 
 def solution_files(function: F) -> F:

@@ -1,24 +1,20 @@
 """The options of layouts, the reading of their files, and the list of what an instance does not express."""
 
 import json
-from collections.abc import Callable
-from dataclasses import dataclass, fields
-from functools import wraps
-from pathlib import Path
-from typing import Any, TypeVar, cast
+from dataclasses import dataclass
 
 import click
 
 from carp_spec import AfterGoal
 from carp_spec.documents.instances import write_instance
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import InputFile, print_document, read_bytes, shown, write_whole
+from carproof.command_line.files import InputFile, Output, print_document, read_bytes, shown, write_whole
+from carproof.command_line.options import gathered
 from carproof.command_line.output import show_instance
 from carproof.command_line.tables import remark
 from carproof.layouts import READERS, Imported, Settings, import_layout
 from carproof.layouts.settings import footprint, seconds, speed
 
-F = TypeVar("F", bound=Callable[..., Any])
 MOST_LINES = 8
 """The lines that are listed of a feature."""
 
@@ -35,50 +31,28 @@ class LayoutOptions:
     footprint: str | None
     turning: str | None
 
-    @property
-    def given(self) -> str | None:
-        """The first of them, if any."""
-        return next((f"--{each.name}" for each in fields(self) if getattr(self, each.name) is not None), None)
-
 
 def layout_formats() -> str:
     """The formats with their descriptions."""
     return "; ".join(f"{each.name}: {each.description}" for each in READERS.values())
 
 
-def layout_options(function: F) -> F:
-    """The options; the command gets them as `layout`."""
-
-    @wraps(function)
-    def command(**options: Any) -> object:  # noqa: ANN401 - the command's own
-        taken = {each.name: options.pop(each.name) for each in fields(LayoutOptions)}
-        return function(layout=LayoutOptions(**taken), **options)
-
-    wrapped: Any = command
-    for option in (
-        click.option("--turning", help="The time of a quarter turn, like 2s.  [default: vehicles turn at once]"),
-        click.option("--footprint", help="The size of vehicles, 900x600mm or a radius like 450mm, to keep them apart."),
-        click.option("--requests", type=InputFile(), help="CSV with the columns robot, start, goal and release."),
-        click.option("--seed", type=int, help="The seed of starts and goals.  [default: 0]"),
-        click.option("--robots", type=int, help="Robots on points where vehicles may stand.  [default: the file's]"),
-        click.option("--speed", help="The speed of vehicles, like 1.2m/s.  [default: the file's, or 1m/s]"),
-        click.option("--tick", help="The time of a tick, like 0.5s or 100ms.  [default: 1s]"),
-    ):
-        wrapped = option(wrapped)
-    return cast("F", wrapped)
+layout_options = gathered(
+    "layout",
+    LayoutOptions,
+    click.option("--tick", help="The time of a tick, like 0.5s or 100ms.  [default: 1s]"),
+    click.option("--speed", help="The speed of vehicles, like 1.2m/s.  [default: the file's, or 1m/s]"),
+    click.option("--robots", type=int, help="Robots on points where vehicles may stand.  [default: the file's]"),
+    click.option("--seed", type=int, help="The seed of starts and goals.  [default: 0]"),
+    click.option("--requests", type=InputFile(), help="CSV with the columns robot, start, goal and release."),
+    click.option("--footprint", help="The size of vehicles, 900x600mm or a radius like 450mm, to keep them apart."),
+    click.option("--turning", help="The time of a quarter turn, like 2s.  [default: vehicles turn at once]"),
+)
 
 
-def show_layout(
-    name: str,
-    format: str | None,
-    options: LayoutOptions,
-    after_goal: AfterGoal,
-    output: Path | None,
-    *,
-    as_json: bool,
-) -> Answer:
+def show_layout(name: str, format: str | None, options: LayoutOptions, after_goal: AfterGoal, output: Output) -> Answer:
     """Make an instance of a layout, write it, and list what it does not express."""
-    if as_json and output is None:
+    if output.as_json and output.file is None:
         raise click.UsageError("--json lists what is not expressed; give the instance a file by -o.")
     if options.requests is not None and (options.robots is not None or options.seed is not None):
         raise click.UsageError("--requests has the robots, so --robots and --seed do not apply.")
@@ -95,11 +69,11 @@ def show_layout(
         "requests" if options.requests is None else shown(options.requests),
     )
     imported = import_layout(read_bytes(name, layouts=True), shown(name), format, settings)
-    if as_json and output is not None:
-        write_whole(output, write_instance(imported.instance))
+    if output.as_json and output.file is not None:
+        write_whole(output.file, write_instance(imported.instance))
         print_document(json.dumps(_document(imported), ensure_ascii=False).encode() + b"\n")
     else:
-        show_instance(imported.instance, output, as_json=False)
+        show_instance(imported.instance, output)
         for each in imported.notes:
             lines = ", ".join(map(str, each.lines[:MOST_LINES])) + (", ..." if len(each.lines) > MOST_LINES else "")
             where = f"line {lines}" if len(each.lines) == 1 else f"{len(each.lines)} times, lines {lines}"

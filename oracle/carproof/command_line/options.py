@@ -1,13 +1,15 @@
 """Arguments and options that several commands share."""
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from dataclasses import fields
+from functools import wraps
+from typing import Any, TypeVar, cast
 
 import click
 
 from carp_spec import FixedPaths, Neighbourhood, Planner, Shuffled
 from carp_spec.inputs.options import SEARCH_SECONDS
-from carproof.command_line.files import InputFile, OutputFile
+from carproof.command_line.files import InputFile, Output, OutputFile
 from carproof.engines import ENGINES
 from carproof.generate import Range
 from carproof.planner_options import PLANNERS, planner_named
@@ -31,6 +33,28 @@ class RangeType(click.ParamType[Range]):
             self.fail(f"{value!r} must be a whole number or LOW..HIGH, like 1..3.", param, ctx)
 
 
+def gathered(name: str, kind: type[Any], *options: Callable[[Any], Any]) -> Callable[[F], F]:
+    """Options, which a command gets as one dataclass; its fields have the names of their parameters."""
+
+    def decorate(function: F) -> F:
+        @wraps(function)
+        def command(**given: Any) -> object:  # noqa: ANN401 - the command's own
+            taken = {each.name: given.pop(each.name) for each in fields(kind)}
+            return function(**{name: kind(**taken)}, **given)
+
+        wrapped: Any = command
+        for option in reversed(options):
+            wrapped = option(wrapped)
+        return cast("F", wrapped)
+
+    return decorate
+
+
+def first_given(options: Any) -> str | None:  # noqa: ANN401 - a dataclass of options
+    """The first option of a dataclass that was given, if any."""
+    return next((f"--{each.name}" for each in fields(options) if getattr(options, each.name) is not None), None)
+
+
 def examples(*lines: str) -> str:
     """The end of a command's help: examples, printed as they are."""
     return "\n".join(["\b", "Examples:", *(f"  {line}" for line in lines)])
@@ -42,12 +66,14 @@ trace_argument = click.argument("trace", type=InputFile())
 output_option = click.option(
     "--output",
     "-o",
+    "file",
     type=OutputFile(),
     help="Write the document to this file, whole or not at all; - is standard output.",
 )
 json_option = click.option(
     "--json", "as_json", is_flag=True, help="Print the document on standard output, and nothing else."
 )
+output_options = gathered("output", Output, output_option, json_option)
 kernel_option = click.option("--kernel", is_flag=True, help="Let the proved kernel decide; `make kernel` builds it.")
 engine_option = click.option(
     "--engine",
@@ -70,7 +96,7 @@ def asks_for_a_robot(function: F) -> F:
 
 def gives_plans(function: F) -> F:
     """--engine, and where the new plans go."""
-    return engine_option(output_option(json_option(function)))
+    return engine_option(output_options(function))
 
 
 limit_option = click.option(

@@ -1,7 +1,7 @@
 """The output of commands: documents for programs, tables for people."""
 
 from collections.abc import Sequence
-from pathlib import Path
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from carp_spec import Instance, Plan, RobotId, Solution, total_cost
@@ -9,7 +9,7 @@ from carp_spec.check import MOST_LISTED
 from carp_spec.documents.instances import write_instance
 from carp_spec.rule import interval
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import print_document, write_whole
+from carproof.command_line.files import Output
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import have_plans_beside, sum_of_shortest_paths
 from carproof.judging.unplanned import why_unplanned
@@ -22,26 +22,13 @@ COLUMNS = ("planner", "robots", "unplanned", "total cost", "shortest paths", "ra
 NOT_FOUND = "the planner found no plan for it, though there is one beside the plans of the others"
 
 
-def show_instance(instance: Instance, output: Path | None, as_json: bool) -> Answer:
+def show_instance(instance: Instance, output: Output) -> Answer:
     """Write an instance to the file, or print its document; tell people what was written."""
-    document = write_instance(instance)
-    if output is not None:
-        write_whole(output, document)
-    if output is None or as_json:
-        print_document(document)
-    else:
+    if replace(output, as_json=output.as_json or output.file is None).write(write_instance(instance)):
         columns = ["written", "resources", "edges", "robots", "after goal"]
-        row = [output, len(instance.graph.resources), len(instance.graph.edges), len(instance.robots)]
+        row = [output.file, len(instance.graph.resources), len(instance.graph.edges), len(instance.robots)]
         print_table(columns, [[*row, instance.after_goal]], numbers=columns[1:4])
     return Answer.YES
-
-
-def write_result(document: bytes, output: Path | None, as_json: bool) -> None:
-    """Write a document to the file, if one is given, and to standard output, if it is asked for."""
-    if output is not None:
-        write_whole(output, document)
-    if as_json:
-        print_document(document)
 
 
 def show_solution(

@@ -7,9 +7,8 @@ import click
 from carp_reference.execution import order_of
 from carp_spec.documents.decoding import write
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import OutputFile, naming, read_sound, shown, write_whole
-from carproof.command_line.options import examples, instance_argument, json_option, output_option, solution_argument
-from carproof.command_line.output import write_result
+from carproof.command_line.files import Output, OutputFile, naming, read_sound, shown, write_whole
+from carproof.command_line.options import examples, instance_argument, output_options, solution_argument
 from carproof.command_line.tables import print_line, print_table
 from carproof.execution.delays import late_robots
 from carproof.execution.simulation import DependenciesDocument, delay_named, dependencies_document, dot
@@ -30,17 +29,15 @@ from carproof.viewer.dependency_picture import dependency_still
 @click.option("--delay", "delays", metavar="ROBOT:VISIT:TICKS", multiple=True, help="A delay at a visit, from 0 on.")
 @click.option("--dot", "graph", type=OutputFile(), help="Write the graph for Graphviz to this file.")
 @click.option("--svg", "picture", type=OutputFile(), help="Draw the graph: robots by time, with arrows between visits.")
-@output_option
-@json_option
-def command(  # noqa: PLR0913 - one parameter for each argument and option
+@output_options
+def command(
     *,
     instance: str,
     solution: str,
     delays: tuple[str, ...],
     graph: Path | None,
     picture: Path | None,
-    output: Path | None,
-    as_json: bool,
+    output: Output,
 ) -> Answer:
     """Make the action dependency graph of SOLUTION: which visits wait for which if robots keep the planned order.
 
@@ -60,8 +57,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         write_whole(picture, drawn)
     if graph is not None:
         write_whole(graph, dot(order).encode())
-    write_result(write(document), output, as_json)
-    if not as_json:
+    if output.write(write(document)):
         show(document)
     return Answer.of(document.acyclic)
 

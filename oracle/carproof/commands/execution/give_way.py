@@ -1,7 +1,5 @@
 """`carproof execution give-way`: a robot with priority goes first, and the others give way."""
 
-from pathlib import Path
-
 import click
 import msgspec
 
@@ -11,12 +9,12 @@ from carp_spec.requests import require_tick
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import (
     InputFile,
+    Output,
     naming,
     read_bytes,
     read_sound,
 )
 from carproof.command_line.options import asks_for_a_robot, examples, gives_plans
-from carproof.command_line.output import write_result
 from carproof.command_line.tables import print_line, print_table, remark
 from carproof.engines import engine_named
 from carproof.execution.giving_way import give_way
@@ -41,8 +39,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     now: int,
     route: str | None,
     engine: str | None,
-    output: Path | None,
-    as_json: bool,
+    output: Output,
 ) -> Answer:
     """Give ROBOT the earliest plan that the histories of the others allow, and plan the others around it.
 
@@ -62,8 +59,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     if found.solution is None:
         remark(f"Robot {id} gets no plan, and no other plan has changed.")
         return Answer.NO
-    write_result(write_solution(found.solution), output, as_json)
-    if not as_json:
+    if output.write(write_solution(found.solution)):
         least = "no lawful update is earlier" if found.is_first else f"none is earlier than {found.least}"
         proved = least if visits is None else "on its route"
         print_line(f"robot {id} arrives at tick {found.arrival}: {proved}")

@@ -1,7 +1,5 @@
 """`carproof release`: which further resources robots may be granted so that everybody can still finish."""
 
-from pathlib import Path
-
 import click
 
 from carp_spec.documents.decoding import write
@@ -9,16 +7,14 @@ from carp_spec.documents.solutions import read_trace
 from carproof.api.executing import check_grants
 from carproof.api.executing import release as released_of
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import InputFile, naming, read_file, read_sound
+from carproof.command_line.files import InputFile, Output, naming, read_file, read_sound
 from carproof.command_line.options import (
     examples,
     instance_argument,
-    json_option,
-    output_option,
+    output_options,
     solution_argument,
     trace_argument,
 )
-from carproof.command_line.output import write_result
 from carproof.command_line.tables import counted, print_line, print_table
 from carproof.command_line.time_left import time_left
 from carproof.execution.release_documents import (
@@ -55,8 +51,7 @@ ANSWERS = {"safe": Answer.YES, "unsafe": Answer.NO, "undecided": Answer.UNDECIDE
     help=f"The most states of a search.  [default: {MOST_STATES}, or none with --seconds]",
 )
 @click.option("--seconds", type=float, help="The time of the whole command.")
-@output_option
-@json_option
+@output_options
 @click.pass_context
 def command(  # noqa: PLR0913 - one parameter for each argument and option
     context: click.Context,
@@ -68,8 +63,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     grants: str | None,
     states: int | None,
     seconds: float | None,
-    output: Path | None,
-    as_json: bool,
+    output: Output,
 ) -> Answer:
     """Tell which further resources of their plans robots may be granted at TRACE, so that everybody can still finish.
 
@@ -93,15 +87,13 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             verdict = grants_verdict_document(
                 problem, check_grants(problem, sound, done, wanted, states, time_left(context, seconds))
             )
-        write_result(write(verdict), output, as_json)
-        if not as_json:
+        if output.write(write(verdict)):
             print_line(_sentence(verdict, states, seconds))
         return ANSWERS[verdict.answer]
     robots = [plan.robot for plan in sound.plans] if beyond else []
     with naming(trace):
         document = released_document(released_of(problem, sound, done, robots, states, time_left(context, seconds)))
-    write_result(write(document), output, as_json)
-    if not as_json:
+    if output.write(write(document)):
         _show(document)
     is_decided = all(each.answer != "undecided" for each in document.beyond)
     return Answer.YES if is_decided else Answer.UNDECIDED

@@ -1,23 +1,19 @@
 """`carproof execution retime`: plans for the rest of the way, after delays."""
 
-from pathlib import Path
-
 import click
 
 from carp_spec import total_cost
 from carp_spec.documents.solutions import read_trace, write_solution
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import naming, read_file, read_sound
+from carproof.command_line.files import Output, naming, read_file, read_sound
 from carproof.command_line.options import (
     engine_option,
     examples,
     instance_argument,
-    json_option,
-    output_option,
+    output_options,
     solution_argument,
     trace_argument,
 )
-from carproof.command_line.output import write_result
 from carproof.command_line.tables import counted, print_line
 from carproof.engines import engine_named
 
@@ -33,11 +29,8 @@ from carproof.engines import engine_named
 @solution_argument
 @trace_argument
 @engine_option
-@output_option
-@json_option
-def command(
-    *, instance: str, solution: str, trace: str, engine: str | None, output: Path | None, as_json: bool
-) -> Answer:
+@output_options
+def command(*, instance: str, solution: str, trace: str, engine: str | None, output: Output) -> Answer:
     """Give the plans of SOLUTION new ticks: the visits of TRACE stay, the others follow in order as early as possible.
 
     The result is a solution under way at the tick of the trace: `add` and `query` take it with --now.
@@ -48,8 +41,7 @@ def command(
     done = read_file(trace, read_trace)
     with naming(trace):
         after = engine_named(engine).retime(problem, sound, done)
-    write_result(write_solution(after), output, as_json)
-    if not as_json:
+    if output.write(write_solution(after)):
         arrivals = {plan.robot: plan.visits[-1].enter for plan in sound.plans}
         print_line(f"total cost {total_cost(problem, sound.plans)} before, {total_cost(problem, after.plans)} now")
         for plan in after.plans:

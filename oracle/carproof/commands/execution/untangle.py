@@ -1,6 +1,5 @@
 """`carproof execution untangle`: a solution that robots can follow in order."""
 
-from pathlib import Path
 from time import perf_counter
 
 import click
@@ -8,9 +7,8 @@ import click
 from carp_spec import total_cost
 from carp_spec.documents.solutions import write_solution
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import read_sound
+from carproof.command_line.files import Output, read_sound
 from carproof.command_line.options import examples, gives_plans, instance_argument, solution_argument
-from carproof.command_line.output import write_result
 from carproof.command_line.tables import print_table, remark
 from carproof.command_line.time_left import time_left
 from carproof.engines import engine_named
@@ -27,15 +25,14 @@ from carproof.requests import deadline
 @click.option("--seconds", type=float, help="The time of the whole command.")
 @gives_plans
 @click.pass_context
-def command(  # noqa: PLR0913 - one parameter for each argument and option
+def command(
     context: click.Context,
     *,
     instance: str,
     solution: str,
     seconds: float | None,
     engine: str | None,
-    output: Path | None,
-    as_json: bool,
+    output: Output,
 ) -> Answer:
     """Replan robots of SOLUTION until no robots enter each other's places in a circle.
 
@@ -53,8 +50,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         names = ", ".join(map(str, found.rotation))
         remark(f"Out of the rotation of the robots {names} none finds another plan.")
         return Answer.NO
-    write_result(write_solution(found.solution), output, as_json)
-    if not as_json:
+    if output.write(write_solution(found.solution)):
         columns = ["robots", "rotations removed", "total cost", "extra"]
         row = [len(sound.plans), found.rounds, total_cost(problem, found.solution.plans), found.extra]
         print_table(columns, [row], numbers=columns)

@@ -1,6 +1,5 @@
 """`carproof audit`: whether each plan of a solution is optimal beside those before it."""
 
-from collections.abc import Sequence
 from time import perf_counter
 
 import click
@@ -8,22 +7,13 @@ import click
 from carp_spec.documents.decoding import write
 from carp_spec.requests import sound_solution
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import (
-    InputFile,
-    naming,
-    print_document,
-    read_bytes,
-    read_instance_file,
-    refuse_two_standard_inputs,
-    shown,
-)
-from carproof.command_line.foreign import MovingAI, from_option, movingai_options, read_movingai
+from carproof.command_line.files import naming, print_document
+from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import engine_option, examples, json_option, kernel_option
 from carproof.command_line.output import shown_plan
 from carproof.command_line.tables import print_line, print_table
 from carproof.command_line.time_left import time_left
 from carproof.engines import engine_named
-from carproof.formats import format_of, read_foreign_solution
 from carproof.judging.audit import Audit, ask_kernel, audit_in_order, audit_in_some_order
 from carproof.judging.documents import arrival_of, audit_document
 from carproof.progress import progress
@@ -42,9 +32,7 @@ OWN_FORMAT = "carproof"
         "carproof audit --map town.map --scen town.scen --agents 40 result.txt",
     ),
 )
-@click.argument("files", metavar="[INSTANCE] SOLUTION", nargs=-1, required=True, type=InputFile())
-@movingai_options
-@from_option
+@solution_files
 @click.option("--find-order", is_flag=True, help="Look for an order in which no plan is late, whatever SOLUTION says.")
 @click.option("--seconds", type=float, help="The time of the whole command, without the kernel's.")
 @kernel_option
@@ -54,11 +42,7 @@ OWN_FORMAT = "carproof"
 def command(  # noqa: PLR0913 - one parameter for each argument and option
     context: click.Context,
     *,
-    files: Sequence[str],
-    map: str | None,
-    scen: str | None,
-    agents: int | None,
-    format: str | None,
+    problem: Problem,
     find_order: bool,
     seconds: float | None,
     kernel: bool,
@@ -80,16 +64,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     Exit codes: 0 each plan is certified, 1 a plan is late, 2 bad input, 3 no plan is late, and some are undecided.
     """
     until = deadline(time_left(context, seconds))
-    *instances, solution = files
-    benchmark = MovingAI.of(map, scen, agents)
-    if len(instances) != (benchmark is None):
-        raise click.UsageError("Give INSTANCE and SOLUTION, or --map, --scen and SOLUTION.")
-    refuse_two_standard_inputs(*files, *(benchmark.names if benchmark else ()))
-    instance = read_movingai(benchmark) if benchmark else read_instance_file(instances[0])
-    data, name = read_bytes(solution), shown(solution)
-    format = format or format_of(data, instance, name)
-    given = read_foreign_solution(data, instance, name, format)
-    with naming(solution):
+    instance, given, format = problem.read_with_format()
+    with naming(problem.solution or ""):
         sound = sound_solution(instance, given)
     look = audit_in_some_order if find_order or format != OWN_FORMAT else audit_in_order
     certifying = engine_named(engine or "optimized")  # compiled before the clock starts

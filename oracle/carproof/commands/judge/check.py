@@ -1,7 +1,6 @@
 """`carproof check`: whether a solution, in carproof's format or another planner's, breaks a rule."""
 
 from collections import Counter
-from pathlib import Path
 
 import click
 
@@ -15,9 +14,9 @@ from carp_verify.footprint.rules import FOOTPRINT_RULES
 from carp_verify.kernel import KernelVerdict, ask, request
 from carproof.api.judging import check
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import naming, print_document, write_whole
+from carproof.command_line.files import Output, naming
 from carproof.command_line.foreign import Problem, solution_files
-from carproof.command_line.options import examples, json_option, kernel_option, output_option
+from carproof.command_line.options import examples, kernel_option, output_options
 from carproof.command_line.tables import print_line, print_table, say
 from carproof.commands.judge.second_opinion import certified
 from carproof.layouts.settings import footprint as footprint_of
@@ -51,8 +50,7 @@ from carproof.registry import RULES
 )
 @click.option("--require-all", is_flag=True, help="Answer no also if a robot has no plan.")
 @click.option("--all", "everything", is_flag=True, help="List every violation, however many there are.")
-@output_option
-@json_option
+@output_options
 def command(  # noqa: PLR0913 - an argument an option
     *,
     problem: Problem,
@@ -62,8 +60,7 @@ def command(  # noqa: PLR0913 - an argument an option
     cells: str | None,
     require_all: bool,
     everything: bool,
-    output: Path | None,
-    as_json: bool,
+    output: Output,
 ) -> Answer:
     """Check the plans of SOLUTION against INSTANCE, or against a MovingAI map and scenario.
 
@@ -94,17 +91,13 @@ def command(  # noqa: PLR0913 - an argument an option
     step = None if cells is None else step_of_cells(cells)
     instance, given = problem.read(as_named=True)
     if z3:
-        return certified(instance, given, as_json)
+        return certified(instance, given, output.as_json)
     most = None if everything else MOST_LISTED
     with naming(problem.names[0]):
         verdict = check(instance, given, most, size, step)
     decided = kernel_verdict(instance, given, verdict) if kernel else None
     document = write_verdict(verdict) if decided is None else write(decided)
-    if output is not None:
-        write_whole(output, document)
-    if as_json:
-        print_document(document)
-    else:
+    if output.write(document):
         print_verdict(verdict, most, require_all)
         if decided is not None:
             print_line(f"decided by {decided.by}")

@@ -6,10 +6,9 @@ import click
 
 from carp_spec.documents.solutions import read_trace
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import InputFile, naming, read_file, refuse_two_standard_inputs
+from carproof.command_line.files import InputFile, Output, naming, read_file, refuse_two_standard_inputs
 from carproof.command_line.foreign import Problem, instance_and_perhaps_solution
 from carproof.command_line.options import examples, output_option
-from carproof.command_line.output import write_result
 from carproof.command_line.tables import print_table
 from carproof.viewer.limits import refuse_tick
 from carproof.viewer.page import page
@@ -36,7 +35,7 @@ PAGE, PICTURE = (".html", ".htm"), ".svg"
 @click.option("--chart", is_flag=True, help="Draw the chart of resources by time, as a still SVG.")
 @click.option("--trace", type=InputFile(), help="Show what has happened beside the plans; page only.")
 @output_option
-def command(problem: Problem, at: int | None, chart: bool, trace: str | None, output: Path | None) -> Answer:
+def command(problem: Problem, at: int | None, chart: bool, trace: str | None, file: Path | None) -> Answer:
     """Show the plans of SOLUTION on the map of INSTANCE, in one HTML file that needs no network.
 
     SOLUTION is in any format that check reads (--from). The page has the map with its robots moving, the chart of
@@ -57,7 +56,7 @@ def command(problem: Problem, at: int | None, chart: bool, trace: str | None, ou
     is_still = chart or at is not None
     if problem.solution is None and (is_still or trace is not None):
         raise click.UsageError("--at, --chart and --trace show plans: give SOLUTION too.")
-    refuse_suffix(output, is_still=is_still, is_alone=problem.solution is None)
+    refuse_suffix(file, is_still=is_still, is_alone=problem.solution is None)
     refuse_two_standard_inputs(*problem.names, *([] if trace is None else [trace]))
     if problem.solution is None:
         instance, solution = problem.read_instance(), None
@@ -67,7 +66,7 @@ def command(problem: Problem, at: int | None, chart: bool, trace: str | None, ou
     title = problem.title
     with naming(problem.solution or problem.instance or problem.names[0]):
         if solution is None:
-            is_picture = output is not None and output.suffix.lower() == PICTURE
+            is_picture = file is not None and file.suffix.lower() == PICTURE
             drawn = map_still(instance, None, 0, title) if is_picture else page(instance, None, title)
         elif chart:
             drawn = chart_still(instance, solution, title)
@@ -77,9 +76,9 @@ def command(problem: Problem, at: int | None, chart: bool, trace: str | None, ou
             drawn = map_still(instance, solution, at, title)
         else:
             drawn = page(instance, solution, title, happened)
-    write_result(drawn, output, as_json=output is None)
-    if output is not None:
-        print_table(["written", "bytes"], [[output, len(drawn)]], numbers=["bytes"])
+    Output(file, as_json=file is None).write(drawn)
+    if file is not None:
+        print_table(["written", "bytes"], [[file, len(drawn)]], numbers=["bytes"])
     return Answer.YES
 
 

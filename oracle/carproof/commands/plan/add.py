@@ -1,6 +1,5 @@
 """`carproof add`: add one robot to given plans, by the neighbourhood planner."""
 
-from pathlib import Path
 from typing import Any, cast
 
 import click
@@ -9,7 +8,7 @@ from carp_spec import Neighbourhood
 from carp_spec.documents.solutions import write_solution
 from carp_spec.requests import require_new_robot, require_tick
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import naming, read_sound
+from carproof.command_line.files import Output, naming, read_sound
 from carproof.command_line.options import (
     ADDING,
     asks_for_a_robot,
@@ -18,7 +17,7 @@ from carproof.command_line.options import (
     gives_plans,
     planner_options,
 )
-from carproof.command_line.output import show_addition, write_result
+from carproof.command_line.output import show_addition
 from carproof.engines import engine_named
 from carproof.requests import robot_called
 
@@ -35,15 +34,14 @@ from carproof.requests import robot_called
 @asks_for_a_robot
 @planner_options(*ADDING)
 @gives_plans
-def command(  # noqa: PLR0913 - one parameter for each argument and option
+def command(
     *,
     instance: str,
     solution: str,
     robot: str,
     now: int,
     engine: str | None,
-    output: Path | None,
-    as_json: bool,
+    output: Output,
     **options: Any,  # noqa: ANN401 - `planner_named` checks them
 ) -> Answer:
     """Add ROBOT, which INSTANCE has, to the plans of SOLUTION, by the neighbourhood planner.
@@ -60,7 +58,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     require_new_robot(problem, before, id, "ROBOT")
     with naming(instance):
         after = engine_named(engine).add(problem, before, id, now, chosen)
-    write_result(write_solution(after), output, as_json)
-    if not as_json:
+    if output.write(write_solution(after)):
         show_addition(problem, before, after, id, now)
     return Answer.of(id not in after.unplanned)

@@ -10,7 +10,7 @@ from carp_spec.documents.instances import write_instance
 from carp_spec.documents.solutions import write_solution
 from carp_spec.requests import require_tick
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import OutputFile, read_sound, write_whole
+from carproof.command_line.files import Output, OutputFile, read_sound, write_whole
 from carproof.command_line.options import (
     ADDING,
     asks_for_a_robot,
@@ -19,7 +19,7 @@ from carproof.command_line.options import (
     gives_plans,
     planner_options,
 )
-from carproof.command_line.output import show_addition, write_result
+from carproof.command_line.output import show_addition
 from carproof.command_line.tables import print_line
 from carproof.engines import engine_named
 from carproof.requests import robot_called
@@ -46,8 +46,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     now: int,
     engine: str | None,
     further: Path | None,
-    output: Path | None,
-    as_json: bool,
+    output: Output,
     **options: Any,  # noqa: ANN401 - `planner_named` checks them
 ) -> Answer:
     """Give ROBOT further stops at the tick --now: a STOP is a resource, or RESOURCE:SERVICE with ticks of service.
@@ -66,14 +65,12 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     assigned, after = engine_named(engine).assign(problem, before, id, wanted, now, chosen)
     if further is not None:
         write_whole(further, write_instance(assigned))
-    write_result(write_solution(after), output, as_json)
-    if assigned is problem:
-        if not as_json:
+    if output.write(write_solution(after)):
+        if assigned is problem:
             print_line(f"robot {id} keeps its stops: no plan over further ones was found")
-        return Answer.NO
-    if not as_json:
-        show_addition(problem, before, after, id, now)
-    return Answer.YES
+        else:
+            show_addition(problem, before, after, id, now)
+    return Answer.of(assigned is not problem)
 
 
 def stop_called(instance: Instance, name: str) -> Stop:

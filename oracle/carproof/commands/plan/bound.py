@@ -1,6 +1,5 @@
 """`carproof bound`: a lower bound on the total cost, with a certificate."""
 
-from pathlib import Path
 from time import perf_counter
 
 import click
@@ -9,9 +8,9 @@ from carp_spec import Instance, judge, total_cost
 from carp_spec.documents.decoding import write
 from carp_spec.inputs.options import BOUND_SECONDS
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import InputFile, naming, print_document, refuse_two_standard_inputs, write_whole
+from carproof.command_line.files import InputFile, Output, naming, refuse_two_standard_inputs
 from carproof.command_line.foreign import MovingAI, Problem, from_option, movingai_options, read_solution_of
-from carproof.command_line.options import examples, json_option, output_option
+from carproof.command_line.options import examples, output_options
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import warm
 from carproof.extras import require
@@ -38,8 +37,7 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "best known", "gap", "step
 @click.option("--steps", type=click.IntRange(min=0), help="End after this many steps; the result is always the same.")
 @click.option("--plans", type=InputFile(), help="A solution in any format, whose total is set against the bound.")
 @from_option
-@output_option
-@json_option
+@output_options
 def command(  # noqa: PLR0913 - one parameter for each argument and option
     *,
     instance: str | None,
@@ -50,8 +48,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     steps: int | None,
     plans: str | None,
     format: str | None,
-    output: Path | None,
-    as_json: bool,
+    output: Output,
 ) -> Answer:
     """Find a lower bound on the total cost of any plans for all robots of INSTANCE.
 
@@ -84,13 +81,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     with naming(given.names[0]), search_progress("bounding", steps, limit) as show:
         certificate = lower_bound(problem, limit, steps, keep)
     took = perf_counter() - started
-    document = write(certificate)
-    if output is not None:
-        write_whole(output, document)
     lost = [problem.robot[robot] for robot, least in certificate.robots if least is None]
-    if as_json:
-        print_document(document)
-    else:
+    if output.write(write(certificate)):
         numbers = [len(problem.robots), seen[0].bound, certificate.bound, "-" if known is None else known]
         row = [*numbers, "-" if known is None else gap(known, certificate.bound), seen[-1].steps, f"{took:.2f} s"]
         print_table(COLUMNS, [row], numbers=COLUMNS)

@@ -11,8 +11,8 @@ from carp_spec.documents.decoding import write
 from carp_spec.documents.solutions import write_solution
 from carp_spec.inputs.options import PROCESSES
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import print_document, read_instance_file, write_whole
-from carproof.command_line.options import examples, instance_argument, json_option, limit_option, output_option
+from carproof.command_line.files import Output, print_document, read_instance_file, write_whole
+from carproof.command_line.options import examples, instance_argument, limit_option, output_options
 from carproof.command_line.tables import print_line, print_table, remark
 from carproof.engines import warm
 from carproof.extras import require
@@ -37,11 +37,8 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "cost", "answer", "time")
 @limit_option
 @click.option("--processes", type=click.IntRange(1, 2), default=PROCESSES, help="Two search faster on two cores.")
 @click.option("--proof", type=click.Path(file_okay=False, path_type=Path), help="Write a proof into this folder.")
-@output_option
-@json_option
-def command(
-    *, instance: str, limit: int, processes: int, proof: Path | None, output: Path | None, as_json: bool
-) -> Answer:
+@output_options
+def command(*, instance: str, limit: int, processes: int, proof: Path | None, output: Output) -> Answer:
     """Find the least total cost of plans for all robots of INSTANCE, and plans that have it.
 
     The answer comes from a search and is not proved: it rests on the solver. With --proof it is proved: the command
@@ -62,10 +59,10 @@ def command(
     started = perf_counter()
     best = optimum(problem, limit, processes=processes)
     seconds = perf_counter() - started
-    if output is not None and best.solution is not None:
-        write_whole(output, write_solution(best.solution))
+    if output.file is not None and best.solution is not None:
+        write_whole(output.file, write_solution(best.solution))
     is_proved = proof is not None and best.decided and _prove(proof, problem, best, limit)
-    if as_json:
+    if output.as_json:
         print_document(write(optimum_document(best, is_proved)))
     else:
         answer = "undecided" if not best.decided else "proved" if is_proved else "found, not proved"

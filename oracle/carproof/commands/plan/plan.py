@@ -1,6 +1,5 @@
 """`carproof plan`: plan all robots of an instance."""
 
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -11,7 +10,7 @@ from carp_spec.documents.decoding import write
 from carp_spec.documents.solutions import write_solution
 from carp_spec.inputs.options import require_polish_options
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import naming, read_instance_file
+from carproof.command_line.files import Output, naming, read_instance_file
 from carproof.command_line.options import (
     PLANNING,
     chosen_planner,
@@ -21,7 +20,7 @@ from carproof.command_line.options import (
     planner_option,
     planner_options,
 )
-from carproof.command_line.output import show_found, show_solution, write_result
+from carproof.command_line.output import show_found, show_solution
 from carproof.command_line.planning import plan_showing
 from carproof.command_line.time_left import time_left, time_of_compiling
 from carproof.engines import engine_named, fastest_with, repaired, repairs_by_default
@@ -64,8 +63,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     seconds: float | None,
     iterations: int | None,
     engine: str | None,
-    output: Path | None,
-    as_json: bool,
+    output: Output,
     **options: Any,  # noqa: ANN401 - `planner_named` checks them
 ) -> Answer:
     """Plan all robots of INSTANCE, a document or - for standard input.
@@ -83,7 +81,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """
     if seconds is not None or iterations is not None:
         _refuse_planner_options(context)
-        return _plan_within(context, instance, seconds, iterations, options["seed"] or 0, output, as_json=as_json)
+        return _plan_within(context, instance, seconds, iterations, options["seed"] or 0, output)
     chosen = chosen_planner(planner, options)
     problem = read_instance_file(instance)
     engine = engine or fastest_with(chosen)
@@ -98,8 +96,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             for violation in violations_of(problem, solution.plans):
                 raise AssertionError(violation)
     seconds = perf_counter() - started
-    write_result(write_solution(solution), output, as_json)
-    if not as_json:
+    if output.write(write_solution(solution)):
         show_solution(problem, solution, name, seconds, fleet)
     return Answer.of(not solution.unplanned)
 
@@ -113,15 +110,13 @@ def _refuse_planner_options(context: click.Context) -> None:
             raise Refusal("option", f"$.{name}", "planner/options", message)
 
 
-def _plan_within(  # noqa: PLR0913 - they are the command's
+def _plan_within(
     context: click.Context,
     name: str,
     seconds: float | None,
     iterations: int | None,
     seed: int,
-    output: Path | None,
-    *,
-    as_json: bool,
+    output: Output,
 ) -> Answer:
     from carp_optimized.improve.anytime import find_within  # noqa: PLC0415 - numba is slow to load
 
@@ -140,8 +135,7 @@ def _plan_within(  # noqa: PLR0913 - they are the command's
         left = None if left is None else max(left, SHORTEST)
         found = find_within(problem, lambda each: write(each.document()), iterations, left, seed=seed, advance=advance)
     document = found.document()
-    write_result(write(document), output, as_json)
-    if not as_json:
+    if output.write(write(document)):
         time = perf_counter() - context.find_root().obj - compiling
         show_found(problem, found, document.unplanned, f"best of {played} rounds", time)
     return Answer.of(not document.unplanned)

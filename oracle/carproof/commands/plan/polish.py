@@ -1,6 +1,5 @@
 """`carproof polish`: improve a solution by replanning neighbourhoods."""
 
-from pathlib import Path
 from time import perf_counter
 
 import click
@@ -11,10 +10,10 @@ from carp_spec.inputs.options import require_polish_options
 from carp_spec.polish_rules import ITERATIONS, last_round
 from carp_spec.requests import require_tick, sound_solution
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import InputFile, naming, read_file, refuse_two_standard_inputs
+from carproof.command_line.files import InputFile, Output, naming, read_file, refuse_two_standard_inputs
 from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import examples, gives_plans, now_option
-from carproof.command_line.output import show_unplanned, write_result
+from carproof.command_line.output import show_unplanned
 from carproof.command_line.tables import print_table
 from carproof.command_line.time_left import time_left, time_of_compiling
 from carproof.engines import engine_named, repaired, sum_of_shortest_paths
@@ -56,8 +55,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     now: int,
     bound: str | None,
     engine: str | None,
-    output: Path | None,
-    as_json: bool,
+    output: Output,
 ) -> Answer:
     """Improve SOLUTION, plans for INSTANCE, round by round; robots without a plan get one, if it can be found.
 
@@ -100,8 +98,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     time = perf_counter() - started
     for violation in (*violations_of(instance, after.plans), *check_update(before.plans, after.plans, now)):
         raise AssertionError(violation)
-    write_result(write_solution(after), output, as_json)
-    if not as_json:
+    if output.write(write_solution(after)):
         rows = [_row("given", instance, before, least), _row("polished", instance, after, least)]
         print_table(COLUMNS, [[*rows[0], "", ""], [*rows[1], played, f"{time:.2f} s"]], numbers=COLUMNS[1:])
         show_unplanned(instance, after, after.unplanned)

@@ -9,6 +9,7 @@ from carp_spec.documents.decoding import write
 from carp_spec.requests import require_tick, sound_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import (
+    Output,
     OutputFile,
     naming,
     read_instance_file,
@@ -17,7 +18,6 @@ from carproof.command_line.files import (
     write_whole,
 )
 from carproof.command_line.options import asks_for_a_robot, examples, gives_plans
-from carproof.command_line.output import write_result
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import engine_named
 from carproof.judging.unplanned import why_unplanned
@@ -44,8 +44,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     now: int,
     certificate: Path | None,
     engine: str | None,
-    output: Path | None,
-    as_json: bool,
+    output: Output,
 ) -> Answer:
     """Find the plan with which ROBOT arrives earliest beside the plans of SOLUTION.
 
@@ -71,10 +70,10 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             certifier.commit(others)
             plan, shown = certifier.certify(id, followed, now)
             write_whole(certificate, write(shown))
-    write_result(write(query_document(plan)), output, as_json)
-    if plan is None and not as_json:
+    is_told = output.write(write(query_document(plan)))
+    if plan is None and is_told:
         print_line(f"no plan: {why_unplanned(problem, others, id, now)}")
-    elif plan is not None and not as_json:
+    elif plan is not None and is_told:
         rows = [
             (visit.resource, visit.enter, "for ever" if visit.leave is None else visit.leave) for visit in plan.visits
         ]

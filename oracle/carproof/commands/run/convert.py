@@ -1,7 +1,6 @@
 """`carproof convert`: instances of benchmarks and layouts, and solutions in the formats of other tools."""
 
 from dataclasses import replace
-from pathlib import Path
 from typing import get_args
 
 import click
@@ -11,15 +10,14 @@ from carproof.command_line.answer import Answer
 from carproof.command_line.files import (
     STANDARD_INPUT,
     InputFile,
-    print_document,
+    Output,
     read_bytes,
     read_instance_file,
     refuse_two_standard_inputs,
-    write_whole,
 )
 from carproof.command_line.foreign import AGENTS_HELP, MovingAI, formats, read_movingai, read_solution_of
 from carproof.command_line.layouts import LayoutOptions, layout_formats, layout_options, show_layout
-from carproof.command_line.options import examples, json_option, output_option
+from carproof.command_line.options import examples, first_given, output_options
 from carproof.command_line.orders import OrderOptions, order_options
 from carproof.command_line.output import show_instance
 from carproof.formats import ADAPTERS, write_foreign_solution
@@ -61,8 +59,7 @@ TO_HELP = (
 )
 @order_options
 @layout_options
-@output_option
-@json_option
+@output_options
 def command(  # noqa: PLR0913 - one parameter for each argument and option
     *,
     first: str,
@@ -71,8 +68,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     after_goal: AfterGoal | None,
     to: str | None,
     format: str | None,
-    output: Path | None,
-    as_json: bool,
+    output: Output,
     layout: LayoutOptions,
     orders: OrderOptions,
 ) -> Answer:
@@ -93,35 +89,32 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     The result goes to standard output, or with -o to a file.
     """
-    given = replace(layout, tick=None).given if to in VERSIONS else layout.given
-    if orders.given and to not in VERSIONS:
-        raise click.UsageError(f"{orders.given} concerns orders: --to {' or '.join(VERSIONS)}.")
+    given = first_given(replace(layout, tick=None) if to in VERSIONS else layout)
+    if first_given(orders) and to not in VERSIONS:
+        raise click.UsageError(f"{first_given(orders)} concerns orders: --to {' or '.join(VERSIONS)}.")
     if second is None:
         if agents is not None or to is not None:
             raise click.UsageError("--agents concerns a scenario and --to a solution: give a second file.")
-        return show_layout(first, format, layout, after_goal or "park", output, as_json=as_json)
+        return show_layout(first, format, layout, after_goal or "park", output)
     if given:
         raise click.UsageError(f"{given} concerns a layout, which is one file.")
     refuse_two_standard_inputs(first, second)
     if to is None:
         if format is not None:
             raise click.UsageError("--from and --to concern a solution.")
-        return _show_benchmark(MovingAI(first, second, agents, after_goal or "park"), output, as_json=as_json)
-    if agents is not None or after_goal is not None or as_json:
+        return _show_benchmark(MovingAI(first, second, agents, after_goal or "park"), output)
+    if agents is not None or after_goal is not None or output.as_json:
         raise click.UsageError("--agents, --after-goal and --json concern instances, and --to concerns a solution.")
     data = _converted(first, second, format, to, orders, layout.tick)
-    if output is None:
-        print_document(data)
-    else:
-        write_whole(output, data)
+    Output(output.file, as_json=output.file is None).write(data)
     return Answer.YES
 
 
-def _show_benchmark(benchmark: MovingAI, output: Path | None, *, as_json: bool) -> Answer:
+def _show_benchmark(benchmark: MovingAI, output: Output) -> Answer:
     first = benchmark.map
     if first != STANDARD_INPUT and read_bytes(first).lstrip().startswith(b"{"):
         raise click.UsageError(f"{first} is no map; to convert a solution of an instance, name a format by --to.")
-    return show_instance(read_movingai(benchmark), output, as_json)
+    return show_instance(read_movingai(benchmark), output)
 
 
 def _converted(first: str, second: str, format: str | None, to: str, orders: OrderOptions, tick: str | None) -> bytes:

@@ -2,14 +2,14 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields
-from pathlib import Path
 from typing import Any, TypeVar, get_args
 
 import click
 
 from carp_spec import AfterGoal
 from carproof.command_line.answer import Answer
-from carproof.command_line.options import RangeType, examples, json_option, output_option
+from carproof.command_line.files import Output
+from carproof.command_line.options import RangeType, examples, output_options
 from carproof.command_line.output import show_instance
 from carproof.generate import Fleet, Grid, Traits, Warehouse, grid_instance, warehouse_instance, with_headings
 from carproof.generate.options import JUST_ONE, Distinct, Orders, Side
@@ -48,8 +48,7 @@ def fleet_options(default: Fleet) -> Callable[[F], F]:
         click.option("--capacity", type=RangeType(), default=JUST_ONE, help="Capacities of resources, like 1..2."),
         click.option("--duration", type=RangeType(), default=JUST_ONE, help="Durations of resources, like 1..3."),
         click.option("--headings", is_flag=True, help="Split cells by heading, so that robots turn as in the League."),
-        output_option,
-        json_option,
+        output_options,
     ]
 
     def decorate(function: F) -> F:
@@ -85,14 +84,14 @@ def command() -> None:
 @click.option("--height", type=int, default=20, help="Cells from top to bottom.")
 @click.option("--map", type=int, default=20, help="0 is a spanning tree, 20 the full grid.")
 @fleet_options(Fleet())
-def grid(output: Path | None, as_json: bool, headings: bool, **options: Any) -> Answer:  # noqa: ANN401 - dataclasses check them
+def grid(output: Output, headings: bool, **options: Any) -> Answer:  # noqa: ANN401 - dataclasses check them
     """Make a map of the paper.
 
     Map 0 is a random minimum spanning tree of the grid; map i has i twentieths of the other edges too. The
     maps of one seed are nested. Robots start and end anywhere.
     """
     instance = grid_instance(made_of(Grid, options), made_of(Fleet, options), made_of(Traits, options))
-    return show_instance(with_headings(instance) if headings else instance, output, as_json)
+    return show_instance(with_headings(instance) if headings else instance, output)
 
 
 @command.command(
@@ -111,13 +110,13 @@ def grid(output: Path | None, as_json: bool, headings: bool, **options: Any) -> 
 @click.option("--stations", type=int, default=6, help="Picking stations at the left side.")
 @click.option("--start-at", type=click.Choice(get_args(Side)), default="racks", help="Where robots start.")
 @fleet_options(Fleet(robots=40, distinct="starts"))
-def warehouse(output: Path | None, as_json: bool, headings: bool, **options: Any) -> Answer:  # noqa: ANN401 - dataclasses check them
+def warehouse(output: Output, headings: bool, **options: Any) -> Answer:  # noqa: ANN401 - dataclasses check them
     """Make a warehouse with racks, aisles and picking stations.
 
     Robots go from cells beside the racks to the stations, or the other way.
     """
     instance = warehouse_instance(made_of(Warehouse, options), made_of(Fleet, options), made_of(Traits, options))
-    return show_instance(with_headings(instance) if headings else instance, output, as_json)
+    return show_instance(with_headings(instance) if headings else instance, output)
 
 
 def made_of(kind: type[T], options: Mapping[str, Any]) -> T:
