@@ -10,7 +10,7 @@ import re
 import shlex
 from collections.abc import Callable, Collection
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal
 
 import pytest
 
@@ -31,37 +31,9 @@ class Conformance:
         self._folder = folder
         self._test = test
 
-    @overload
-    def conforms(
-        self,
-        planner: "Callable[[Instance], Solution]",
-        level: LevelName = ...,
-        examples: int = ...,
-        seed: int = ...,
-        documents: Literal[False] = ...,
-        *,
-        without: Collection[str] = ...,
-        solvable: bool = ...,
-        large: float = ...,
-    ) -> None: ...
-
-    @overload
-    def conforms(
-        self,
-        planner: Callable[[dict[str, Any]], dict[str, Any]],
-        level: LevelName = ...,
-        examples: int = ...,
-        seed: int = ...,
-        *,
-        documents: Literal[True],
-        without: Collection[str] = ...,
-        solvable: bool = ...,
-        large: float = ...,
-    ) -> None: ...
-
     def conforms(  # noqa: PLR0913 - the options of the command
         self,
-        planner: Callable[..., Any],
+        planner: "Callable[[Instance], Solution] | Callable[[dict[str, Any]], dict[str, Any]]",
         level: LevelName = "sound",
         examples: int = EXAMPLES,
         seed: int = 0,
@@ -79,18 +51,13 @@ class Conformance:
         is also asked about 10 to 1,000 robots; no other time limits it.
         """
         __tracebackhide__ = True
-        from carproof.extras import advice, require  # noqa: PLC0415 - only a test that judges loads them
-
-        try:
-            require("hypothesis", "pysat")
-        except ModuleNotFoundError as error:
-            pytest.fail(f"carproof.conforms {advice(error)}", pytrace=False)
-        from click import ClickException  # noqa: PLC0415
+        from click import ClickException  # noqa: PLC0415 - only a test that judges loads these
 
         from carp_spec import Refusal  # noqa: PLC0415
         from carproof.conform.python import conforms  # noqa: PLC0415
         from carproof.conform.reporting.saved import own_folder, read_saved, save_all  # noqa: PLC0415
         from carproof.conform.reporting.saving import Origin  # noqa: PLC0415
+        from carproof.extras import advice  # noqa: PLC0415
 
         name = getattr(planner, "__name__", type(planner).__name__)
         origin = Origin(f"{name} at level {level}", shlex.join(["pytest", self._test]))
@@ -101,6 +68,8 @@ class Conformance:
         asked = (level, examples, seed, documents)
         try:
             report = conforms(planner, *asked, without=without, solvable=solvable, large=large, saved=before.cases)
+        except ModuleNotFoundError as error:
+            pytest.fail(f"carproof.conforms {advice(error) or error}", pytrace=False)
         except Refusal as refusal:
             pytest.fail(str(refusal), pytrace=False)
         if report.interrupted:
