@@ -3,7 +3,6 @@
 import io
 import re
 import tokenize
-from collections.abc import Iterable
 from pathlib import Path
 
 from carp_verify.theorems import THEOREMS
@@ -77,19 +76,6 @@ def kernel_lines(path: Path) -> list[str]:
         if part == "\n" or (depth == 0 and part != "*)"):
             code.append(part)
     return [line for line in "".join(code).split("\n") if line.strip()]
-
-
-def coq_lines(paths: Iterable[Path]) -> tuple[int, int]:
-    """The lines of definitions in files of Coq, and those of theorems with their proofs."""
-    definitions = proofs = 0
-    for path in paths:
-        is_proof = False
-        for line in kernel_lines(path):
-            is_proof |= line.lstrip().startswith(("Theorem ", "Lemma "))
-            proofs += is_proof
-            definitions += not is_proof
-            is_proof &= not line.rstrip().endswith(("Qed.", "Defined."))
-    return definitions, proofs
 
 
 def table() -> str:

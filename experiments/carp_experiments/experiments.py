@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 
 from carp_experiments.beyond.delayed import execution_report, execution_row
@@ -12,7 +13,7 @@ from carp_experiments.beyond.neighbours import neighbours_report, neighbours_row
 from carp_experiments.beyond.people import people_report, people_row
 from carp_experiments.beyond.streams import stream_report, stream_row
 from carp_experiments.paper.adding_time import PAPERS_MAP, time_report, time_row
-from carp_experiments.paper.conventions import conventions_row, nearest_row, remaining_row
+from carp_experiments.paper.conventions import CONVENTIONS, NEAREST, remaining_row, row_under
 from carp_experiments.paper.conventions_report import conventions_report
 from carp_experiments.paper.map_cases import FULL_MAP, SORTING, WAREHOUSE, MapCase
 from carp_experiments.paper.polishing import polish_report, polish_row
@@ -132,7 +133,7 @@ EXPERIMENTS = (
         "What the paper leaves open: under which conventions its numbers come out.",
         Profile(100, 100, (10, FULL_MAP)),
         Profile(2, 30, (10, FULL_MAP)),
-        conventions_row,
+        partial(row_under, CONVENTIONS),
         conventions_report,
     ),
     Experiment(
@@ -140,7 +141,7 @@ EXPERIMENTS = (
         "The conventions that bring the paper's numbers out best, over more assignments.",
         Profile(100, 100, (10, FULL_MAP)),
         Profile(2, 30, (10, FULL_MAP)),
-        nearest_row,
+        partial(row_under, NEAREST),
         conventions_report,
     ),
     Experiment(

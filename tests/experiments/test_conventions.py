@@ -12,11 +12,11 @@ from carp_experiments.paper.conventions import (
     DIVISORS,
     Convention,
     add_robot,
-    conventions_row,
     drawn_robots,
     ints,
     meetings_of,
     one_pass,
+    remaining_row,
     world_of,
 )
 from carp_experiments.paper.drawn_maps import drawn_tree, grid_edges
@@ -29,7 +29,7 @@ from carp_spec.permutations import splitmix64
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-CASE = MapCase(conventions_row, 15, 3, 30)
+CASE = MapCase(remaining_row, 15, 3, 30)
 LAWFUL: dict[str, tuple[Convention, dict[str, Any]]] = {
     "carproof": (Convention(), {}),
     "robots park": (Convention(stay=-1), {"after_goal": "park"}),

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-from docs.trusted_base import CHECK, KERNEL, VERDICTS, coq_lines, kernel_lines, module_file
+from docs.trusted_base import CHECK, KERNEL, VERDICTS, kernel_lines, module_file
 from tests.verify.kernel_mutants import mutants, mutated
 
 OURS = r"(?:carp_verify|carp_spec(?=\.documents))"
@@ -38,7 +38,6 @@ def test_comments_of_coq_and_ocaml_are_no_lines_of_code(tmp_path: Path) -> None:
         "(** A page (* of *)\n    x *)\nDefinition one := 1.\n\nLemma two : 1 = 1.\nProof. auto. Qed. (* x *)\n"
     )
     assert kernel_lines(path) == ["Definition one := 1.", "Lemma two : 1 = 1.", "Proof. auto. Qed. "]
-    assert coq_lines([path]) == (1, 2)
 
 
 def test_the_map_of_the_kernel_counts_the_lines_that_must_be_trusted() -> None:

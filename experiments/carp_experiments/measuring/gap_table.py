@@ -116,11 +116,6 @@ def quick(task: Task) -> Task:
     return replace(task, seeds=1, seconds=2, limit=min(task.limit, 2))
 
 
-def first_seeds(tasks: Sequence[Task], seeds: int | None) -> Sequence[Task]:
-    """The tasks on this many assignments each, at most."""
-    return [replace(task, seeds=min(task.seeds, seeds or task.seeds)) for task in tasks]
-
-
 if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("--quick", action="store_true", help="print the tables of one assignment and few seconds")
@@ -130,6 +125,8 @@ if __name__ == "__main__":
         sys.stdout.write("\n".join(gap_tables([*map(quick, GAPS)], [*map(quick, SPLITS)])))
     else:
         results = Path(__file__).parents[3] / "docs" / "results"
-        tables = gap_tables(*(first_seeds(tasks, chosen.seeds) for tasks in (GAPS, SPLITS)))
+        most = chosen.seeds or sys.maxsize
+        fewer = ([replace(task, seeds=min(task.seeds, most)) for task in tasks] for tasks in (GAPS, SPLITS))
+        tables = gap_tables(*fewer)
         for page, name, table in zip(("gaps", "bounds"), ("gap table", "split table"), tables, strict=True):
             write_section(results / f"{page}.md", name, table)

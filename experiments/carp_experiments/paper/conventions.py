@@ -176,20 +176,13 @@ PROPOSED: Mapping[str, Neighbourhood] = {
 LONGEST_FIRST = "LF"
 
 
-def conventions_row(case: MapCase) -> Row:
-    """The screening: for each convention and algorithm the robots planned, and their total cost."""
-    return row_under(CONVENTIONS, case)
-
-
-def nearest_row(case: MapCase) -> Row:
-    """The same for the nearest conventions."""
-    return row_under(NEAREST, case)
-
-
 def remaining_row(case: MapCase) -> Row:
-    """The same for those left out, and the meetings of robots where plans are kept."""
-    keeping = [each for each in REMAINING if each.failure == "keep"]
-    meetings = {each.name: meetings_under(case, each) for each in keeping}
+    """The conventions left out before, and the meetings of robots where plans are kept."""
+    meetings = {
+        each.name: {name: met for name, (_, _, met) in proposed_plans(case, each).items()}
+        for each in REMAINING
+        if each.failure == "keep"
+    }
     return {**row_under(REMAINING, case), "meetings": meetings}
 
 
@@ -197,7 +190,9 @@ def row_under(conventions: Sequence[Convention], case: MapCase) -> Row:
     """For each of these conventions and each algorithm the robots planned, and their total cost."""
     results: dict[str, dict[str, tuple[int, int]]] = {}
     for convention in conventions:
-        results[convention.name] = {**rivals(case, convention.traffic), **proposed(case, convention)}
+        plans = proposed_plans(case, convention).items()
+        ours = {name: (planned, cost) for name, (planned, cost, _) in plans}
+        results[convention.name] = {**rivals(case, convention.traffic), **ours}
     return {"results": results}
 
 
@@ -235,19 +230,12 @@ def shuffled(world: "World", passes: int, seed: int) -> tuple[int, int]:
     return best
 
 
-def proposed(case: MapCase, convention: Convention) -> Mapping[str, tuple[int, int]]:
-    """The paper's algorithm, robot by robot until one finds no plan."""
-    return {name: (planned, cost) for name, (planned, cost, _) in proposed_plans(case, convention).items()}
-
-
-def meetings_under(case: MapCase, convention: Convention) -> Mapping[str, int]:
-    """How often robots meet in the plans of the paper's algorithm."""
-    return {name: met for name, (_, _, met) in proposed_plans(case, convention).items()}
-
-
 @cache
 def proposed_plans(case: MapCase, convention: Convention) -> Mapping[str, tuple[int, int, int]]:
-    """By variant how many robots are planned, their cost, and how often two of them meet."""
+    """The paper's algorithm, robot by robot until one finds no plan.
+
+    By variant how many robots are planned, their cost, and how often two of them meet.
+    """
     return {name: add_all(world_of(case, convention), convention, options, case) for name, options in PROPOSED.items()}
 
 

@@ -9,7 +9,7 @@ import msgspec
 
 from carp_experiments.paper.claims import Claim, quality_claims
 from carp_experiments.paper.map_cases import FULL_MAP, TENTH_MAP
-from carp_experiments.paper.quality import QualitySummary, interval_of_means, summarise
+from carp_experiments.paper.quality import interval_of_means, summarise
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.statistics import Interval
 from carp_experiments.store import Row
@@ -73,7 +73,8 @@ def nearness_of(convention: str, variant: str, stored: Sequence[ConventionsRow],
         for row in stored
     ]
     summary = summarise(rows, robots)
-    verdicts = {claim.claim: verdict_of(claim, variant) for claim in comparisons_of(summary)}
+    claims = (claim for claim in quality_claims(summary) if not claim.claim.startswith("up to"))  # those name a number
+    verdicts = {claim.claim: verdict_of(claim, variant) for claim in claims}
     savings = {
         str(map): {means: saving_of(stored, convention, variant, map, means, robots) for means in MEANS}
         for map in PAPERS
@@ -96,11 +97,6 @@ def nearness_of(convention: str, variant: str, stored: Sequence[ConventionsRow],
     distance = sum(known) + broken if len(known) == len(apart) else None
     assignments = len({row.assignment for row in stored})
     return Nearness(convention, variant, assignments, savings, intervals, failures, verdicts, broken, distance)
-
-
-def comparisons_of(summary: QualitySummary) -> list[Claim]:
-    """The paper's claims that name no number."""
-    return [claim for claim in quality_claims(summary) if not claim.claim.startswith("up to")]
 
 
 def verdict_of(claim: Claim, variant: str) -> str:

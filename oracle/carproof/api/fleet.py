@@ -120,7 +120,8 @@ class _Known:
         found = []
         for id, robot in self.robots.items():
             plan = self.plans[id].plan
-            place = max(_entered(plan, tick) - 1, 0)
+            entered = sum(visit.enter <= tick for visit in plan.visits)
+            place = max(entered - 1, 0)
             here = plan.visits[place]
             stops = robot.stops[stops_served(robot.stops[:-1], plan.visits[:place]) :]
             kept = replace(robot, start=here.resource, stops=stops, release=here.enter)
@@ -414,8 +415,3 @@ def _compiled(instance: Instance, plans: Sequence[Plan]) -> "PlannedFleet":
     core = PlannedFleet(instance)
     core.commit(plans)
     return core
-
-
-def _entered(plan: Plan, now: int) -> int:
-    """How many visits of a plan are entered by the tick now."""
-    return sum(visit.enter <= now for visit in plan.visits)

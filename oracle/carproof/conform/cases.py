@@ -104,8 +104,3 @@ def request_of(case: Case) -> dict[str, Any]:
 def request_fields(case: Case) -> dict[str, Any]:
     """The fields of the request besides its id and op."""
     return OPS[case.op].request_fields(request_of(case))
-
-
-def case_input(case: Case) -> dict[str, Any]:
-    """The fields of the request besides the op and the instance."""
-    return {name: value for name, value in request_fields(case).items() if name != "instance"}

@@ -60,13 +60,14 @@ class TimeScale:
 
 def chart_picture(scene: Scene) -> Element:
     """Draw the chart."""
-    rows = visited_places(scene)
+    # the places of the first robot in the order of its visits, then of the second
+    rows = dict.fromkeys(scene.stands[stand].place for track in scene.tracks for stand, _, _ in track.stays)
     scale = TimeScale.beside((scene.places[place].name for place in rows), scene.first, scene.last)
     tops: dict[int, int] = {}
     height = AXIS
     for place in rows:
         tops[place] = height
-        height += row_height(scene, place)
+        height += scene.places[place].lanes * LANE + GAP
     picture = drawing(scale.at(scale.end) + 2 * GAP, height + GAP, "chart")
     hatch_definition(picture)
     draw_windows(picture, scene, scale, tops)
@@ -87,16 +88,6 @@ def entries(scene: Scene) -> Iterator[Entry]:
         yield "violation", "broken rule"
     if scene.start:
         yield "", f"names without {scene.start}"
-
-
-def visited_places(scene: Scene) -> list[int]:
-    """The places that some plan visits: those of the first robot in the order of its visits, then of the second."""
-    return list(dict.fromkeys(scene.stands[stand].place for track in scene.tracks for stand, _, _ in track.stays))
-
-
-def row_height(scene: Scene, place: int) -> int:
-    """The height of a place's row."""
-    return scene.places[place].lanes * LANE + GAP
 
 
 def draw_axis(picture: Element, scale: TimeScale, height: int) -> None:

@@ -17,7 +17,6 @@ from carp_spec.execution.traces import Trace
 from carproof.viewer.colours import variables
 from carproof.viewer.limits import refuse_more
 from carproof.viewer.map_picture import map_picture
-from carproof.viewer.scene import Scene
 from carproof.viewer.scene_builder import make_scene
 from carproof.viewer.shapes import svg_text
 
@@ -36,7 +35,7 @@ def page(instance: Instance, solution: Solution | None, title: str, trace: Trace
         policy=f"default-src 'none'; img-src data:; style-src '{digest(style)}'; script-src '{digest(script)}'",
         style=style,
         map=svg_text(picture),
-        scene=scene_text(scene),
+        scene=msgspec.json.encode(scene).decode().translate(UNSAFE_IN_HTML),
         script=script,
     )
     data = filled.encode()
@@ -47,11 +46,6 @@ def page(instance: Instance, solution: Solution | None, title: str, trace: Trace
 def page_file(name: str) -> str:
     """A file of the page, as text."""
     return files("carproof.viewer").joinpath("web", name).read_text(encoding="utf-8")
-
-
-def scene_text(scene: Scene) -> str:
-    """The scene as JSON that may stand in HTML."""
-    return msgspec.json.encode(scene).decode().translate(UNSAFE_IN_HTML)
 
 
 def digest(text: str) -> str:

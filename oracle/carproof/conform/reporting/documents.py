@@ -37,6 +37,7 @@ def report_document(report: Report, saved: Sequence[Path]) -> bytes:
         asked |= {} if folder is None else {"folder": str(folder)}
         asked |= {"minimal": report.minimal} if outcome is report.smallest else {}
         failures.append({**_finding_fields(outcome.finding), **asked})
+    random = {op: _tally_fields(tally) for op, tally in report.tallies.items()}
     document = {
         "format": FORMAT,
         "program": report.program,
@@ -53,16 +54,12 @@ def report_document(report: Report, saved: Sequence[Path]) -> bytes:
         "judged": report.judged,
         "largest": report.extent,
         "not_asked": report.cut,
-        "answered": {"smoke": _tally_fields(report.smoke), "random": _tallies_fields(report)},
+        "answered": {"smoke": _tally_fields(report.smoke), "random": random},
         "shortfalls": report.shortfalls,
         "failures": failures,
         "saved": str(saved[0]) if saved else None,
     }
     return msgspec.json.encode(document) + b"\n"
-
-
-def _tallies_fields(report: Report) -> dict[str, dict[str, int]]:
-    return {op: _tally_fields(tally) for op, tally in report.tallies.items()}
 
 
 def _tally_fields(tally: Tally) -> dict[str, int]:

@@ -15,7 +15,7 @@ from carp_spec.documents.solutions import solution_of, write_solution
 from carp_spec.execution.traces import Trace
 from carproof.command_line.files import write_whole
 from carproof.conform.answers import Answer
-from carproof.conform.cases import POLISH_ROUNDS, Case, case_input, request_fields
+from carproof.conform.cases import POLISH_ROUNDS, Case, request_fields
 from carproof.conform.judging.claims import features
 from carproof.conform.judging.outcome import Outcome
 from carproof.conform.reporting.advice import advice_for
@@ -173,7 +173,7 @@ def vectors_document(outcome: Outcome) -> dict[str, Any]:
         "id": f"{finding.rule}/found",
         "op": case.op,
         "instance": instance_document(case.instance),
-        "input": case_input(case),
+        "input": {name: value for name, value in request_fields(case).items() if name != "instance"},
         "claim": None if outcome.answer is None else claim(outcome.answer),
         "expected": "invalid",
         "violated": [finding.rule],
