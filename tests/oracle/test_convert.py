@@ -37,45 +37,39 @@ def test_after_goal_can_be_vanish_and_all_agents_are_the_default(carproof: Run) 
     assert len(document["robots"]) == 30
 
 
-@pytest.mark.parametrize(
-    ("text", "line"),
-    [
-        ("", 1),
-        ("type octile\nheight x\nwidth 3\nmap\n", 2),
-        ("type octile\nheight 2\nwith 3\nmap\n", 3),
-        ("type octile\nheight 2\nwidth 3\n", 4),
-        (MAP + "...\n", 7),
-        (MAP.replace("S.T", "S."), 6),
-        (MAP.replace("S.T", "S.x"), 6),
-        (MAP.replace("height 2", "height " + "9" * 5000), 2),
-    ],
+BROKEN_MAPS = (
+    ("", 1),
+    ("type octile\nheight x\nwidth 3\nmap\n", 2),
+    ("type octile\nheight 2\nwith 3\nmap\n", 3),
+    ("type octile\nheight 2\nwidth 3\n", 4),
+    (MAP + "...\n", 7),
+    (MAP.replace("S.T", "S."), 6),
+    (MAP.replace("S.T", "S.x"), 6),
+    (MAP.replace("height 2", "height " + "9" * 5000), 2),
 )
-def test_a_broken_map_is_refused_with_file_and_line(carproof: Run, elsewhere: Path, text: str, line: int) -> None:
-    (elsewhere / "broken_$.map").write_text(text)
-    outcome = carproof("convert broken_$.map m.scen")
-    assert (outcome.code, outcome.stdout) == (2, "")
-    assert outcome.stderr.startswith(f"Error: broken_$.map:{line}: ")
-    assert outcome.stderr.endswith(" [movingai/map]\n")
+BROKEN_SCENARIOS = (
+    ("", 1),
+    ("version 2\n", 1),
+    (SCENARIO + "0\tm.map\t3\n", 4),
+    (SCENARIO.replace("\t1\t1\t1.41\n0", "\t1\t-1\t1.41\n0"), 2),
+    (SCENARIO.replace("\t3\t2\t0", "\t4\t2\t0"), 2),
+    (SCENARIO.replace("\t1\t1\t1.41\n0", "\t2\t0\t1.41\n0"), 2),
+    (SCENARIO.replace("\t1\t1\t0", "\t1\t7\t0"), 3),
+)
 
 
 @pytest.mark.parametrize(
-    ("text", "line"),
-    [
-        ("", 1),
-        ("version 2\n", 1),
-        (SCENARIO + "0\tm.map\t3\n", 4),
-        (SCENARIO.replace("\t1\t1\t1.41\n0", "\t1\t-1\t1.41\n0"), 2),
-        (SCENARIO.replace("\t3\t2\t0", "\t4\t2\t0"), 2),
-        (SCENARIO.replace("\t1\t1\t1.41\n0", "\t2\t0\t1.41\n0"), 2),
-        (SCENARIO.replace("\t1\t1\t0", "\t1\t7\t0"), 3),
-    ],
+    ("name", "text", "line"),
+    [*(("m_$.map", *each) for each in BROKEN_MAPS), *(("m.scen", *each) for each in BROKEN_SCENARIOS)],
 )
-def test_a_broken_scenario_is_refused_with_file_and_line(carproof: Run, elsewhere: Path, text: str, line: int) -> None:
-    (elsewhere / "broken.scen").write_text(text)
-    outcome = carproof("convert m.map broken.scen")
+def test_a_broken_file_is_refused_with_name_and_line(
+    carproof: Run, elsewhere: Path, name: str, text: str, line: int
+) -> None:
+    (elsewhere / name).write_text(text)
+    outcome = carproof(f"convert {name if name.endswith('map') else 'm.map'} m.scen")
     assert (outcome.code, outcome.stdout) == (2, "")
-    assert outcome.stderr.startswith(f"Error: broken.scen:{line}: ")
-    assert outcome.stderr.endswith(" [movingai/scenario]\n")
+    assert outcome.stderr.startswith(f"Error: {name}:{line}: ")
+    assert outcome.stderr.endswith(f" [movingai/{'map' if name.endswith('map') else 'scenario'}]\n")
 
 
 def test_lines_of_a_map_may_end_as_on_windows() -> None:

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from tests.oracle.running import Run
 
 from carp_spec.instance_rules import instance_faults
-from carproof import Instance, Refusal, ResourceId, write_instance
+from carproof import Instance, Refusal, ResourceId
 from carproof.generate import Fleet, Grid, Range, Traits, Warehouse, grid_instance, warehouse_instance
 
 SEEDS = st.integers(min_value=0, max_value=2**64 - 1)
@@ -118,9 +118,3 @@ PINNED = (
     ':0,"pace":1}]}'
     "\n"
 )
-
-
-def test_the_command_makes_what_the_function_makes(carproof: Run) -> None:
-    instance = warehouse_instance(Warehouse(columns=1, rows=2), Fleet(robots=3, seed=4, distinct="starts"))
-    outcome = carproof(*["generate", "warehouse", "--columns", "1", "--rows", "2", "--robots", "3", "--seed", "4"])
-    assert outcome.stdout.encode() == write_instance(instance)

@@ -79,38 +79,35 @@ def forge(command: str) -> None:
 
 
 @pytest.mark.parametrize("command", COMMANDS[3:])
-def test_what_the_kernel_refuses_is_refused(carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str) -> None:
-    stand_in(monkeypatch, verdict="refused", rule="some/rule", message="it is wrong")
-    forge(command)
-    assert carproof(command) == Outcome(1, "not proved: $: it is wrong [some/rule]\n", "")
-
-
-@pytest.mark.parametrize("command", COMMANDS[3:])
-def test_a_forged_certificate_that_the_kernel_accepts_is_a_contradiction(
-    carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str
+@pytest.mark.parametrize(
+    ("is_forged", "proved", "rule", "code"),
+    [
+        (True, None, "some/rule", 1),
+        (True, 1, None, 70),  # it accepts the forgery
+        (False, -1, None, 70),  # it proves another bound
+        (False, None, "size", 1),  # what is too large for it alone is no contradiction
+    ],
+)
+def test_a_kernel_refuses_with_python_or_contradicts_it(  # noqa: PLR0913, PLR0917
+    carproof: Run,
+    monkeypatch: pytest.MonkeyPatch,
+    command: str,
+    is_forged: bool,
+    proved: int | None,
+    rule: str | None,
+    code: int,
 ) -> None:
-    forge(command)
-    stand_in(monkeypatch, verdict="accepted", bound=proved_by(command) + 1)
+    if is_forged:
+        forge(command)
+    if rule == "size":
+        rule = "query-certificate/size" if "query.json" in command else "bound/size"
+    if proved is None:
+        stand_in(monkeypatch, verdict="refused", rule=rule, message="it is wrong")
+    else:
+        stand_in(monkeypatch, verdict="accepted", bound=proved_by(command) + proved)
     outcome = carproof(command)
-    assert (outcome.code, outcome.stdout) == (70, "")
-    assert "Internal contradiction: " in outcome.stderr
-
-
-@pytest.mark.parametrize("command", COMMANDS[3:])
-def test_a_kernel_that_proves_another_bound_is_a_contradiction(
-    carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str
-) -> None:
-    stand_in(monkeypatch, verdict="accepted", bound=proved_by(command) - 1)
-    assert carproof(command).code == 70
-
-
-@pytest.mark.parametrize("command", COMMANDS[3:])
-def test_a_size_that_only_the_kernel_refuses_is_no_contradiction(
-    carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str
-) -> None:
-    rule = "query-certificate/size" if "query.json" in command else "bound/size"
-    stand_in(monkeypatch, verdict="refused", rule=rule, message="it is too large")
-    assert carproof(command) == Outcome(1, f"not proved: $: it is too large [{rule}]\n", "")
+    assert (outcome.code, outcome.stdout) == (code, f"not proved: $: it is wrong [{rule}]\n" if code == 1 else "")
+    assert ("Internal contradiction: " in outcome.stderr) == (code == 70)
 
 
 def test_a_size_that_only_python_refuses_is_no_contradiction(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -68,17 +68,6 @@ def test_the_scene_has_every_visit_in_its_place_and_every_free_window(carproof: 
     assert (scene["first"], scene["last"]) == (0, 4)
 
 
-def test_what_a_broken_solution_names_beyond_the_instance_is_shown_too(carproof: Run, tmp_path: Path) -> None:
-    plans = solution({"ghost": [["nowhere", 3, 1], ["a", -2, None]], "r1": []}, ["phantom"])
-    scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, plans))
-    notes = {track["label"]: track["note"] for track in scene["tracks"]}
-    gone = "not in the instance"
-    assert notes == {"r1": "", "r2": "unplanned", "ghost": gone, "phantom": gone}
-    assert scene["places"][-1]["label"] == "nowhere"
-    assert scene["places"][-1]["at"] is None
-    assert scene["first"] == -2
-
-
 def test_ids_cannot_leave_their_text(carproof: Run, tmp_path: Path) -> None:
     robot = {**EAST, "id": HOSTILE}
     instance = corridor([robot])

@@ -163,7 +163,7 @@ def test_an_exchange_is_told_as_that_of_two_resources_where_it_is_one() -> None:
         ("bc", "ca", "('b', 'c') and ('c', 'a')"),
     ):
         ends = zip(("r1", "r2"), (there, back), strict=True)
-        plans = [plan_of(robot, (one, 0, 3), (two, 3, 4)) for robot, (one, two) in ends]
+        plans = [plan_of(robot, (way[0], 0, 3), (way[1], 3, 4)) for robot, way in ends]
         assert [each.split(" (", 1)[1] for each in told(instance, *plans)] == [f"they exchange {said} at tick 3)"]
 
 

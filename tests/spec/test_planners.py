@@ -73,28 +73,6 @@ def test_a_value_out_of_range_is_refused(name: str, option: str, right: str, val
         assert refused.message == f"the {option} {right}, not {value!r}"
 
 
-@pytest.mark.parametrize(
-    ("name", "option", "message"),
-    [
-        ("carp", "m", "the planner carp has no option m; it has none"),
-        ("shuffled", "m", "the planner shuffled has no option m; its options are attempts, seed"),
-        ("fixed-paths", "name", "the planner fixed-paths has no option name; its options are k, paths"),
-    ],
-)
-def test_an_option_that_the_planner_does_not_have_is_refused(name: str, option: str, message: str) -> None:
-    with pytest.raises(Refusal) as caught:
-        planner_named(name, {option: 1})
-    assert str(caught.value) == f"$.{option}: {message} [planner/options]"
-
-
-@pytest.mark.parametrize("name", ["", "CARP", "Proposed_4", None, 4, ["carp"], {}])
-def test_a_planner_that_there_is_not_is_refused(name: object) -> None:
-    with pytest.raises(Refusal) as caught:
-        planner_named(name, {})
-    assert (caught.value.kind, caught.value.path) == ("option", "$.planner")
-    assert caught.value.message == f"there is no planner {name!r}; the planners are {', '.join(PLANNERS)}"
-
-
 def test_all_faults_of_a_planner_made_by_hand_are_told() -> None:
     planner = Neighbourhood(m=0, sample=0, seed=-1, fallback=0)
     assert [fault.path for fault in options_are_right(planner)] == ["$.m", "$.sample", "$.seed", "$.fallback"]

@@ -1,6 +1,5 @@
 """The capacity certificate: it agrees with the checker, and names what it refuses."""
 
-import json
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -182,14 +181,6 @@ def test_the_command_certifies_and_refuses(carproof: Run, tmp_path: Path) -> Non
     assert teleport.code == 1
     assert teleport.stdout.startswith("[plan/move] resource c in [1,2): robot r1 (")
     assert "REFUSED: check finds a rule broken, and z3 was not asked" in teleport.stdout
-
-
-def test_the_command_prints_one_document(carproof: Run, tmp_path: Path) -> None:
-    outcome = carproof("check", "--z3", *write(tmp_path, EASTWARD, WESTWARD, STANDING), "--json")
-    document = json.loads(outcome.stdout)
-    assert outcome.code == 1
-    assert document["accepted"] is False
-    assert document["breaches"][0]["robots"] == ["r1", "r2", "r3"]
 
 
 def test_what_z3_cannot_tell_is_undecided(carproof: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
