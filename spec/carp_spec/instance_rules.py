@@ -49,6 +49,10 @@ def positions_are_whole(instance: Instance) -> Found:
             yield f"$.graph.nodes[{position}]", message
 
 
+def _edge(position: int) -> str:
+    return f"$.graph.edges[{position}]"
+
+
 @fault_rule(
     "instance/edge",
     "An edge joins two different resources of the graph, and no edge is listed twice "
@@ -59,15 +63,14 @@ def edges_join_resources(instance: Instance) -> Found:
     graph = instance.graph
     first_at: dict[object, int] = {}
     for position, (source, target) in enumerate(graph.edges):
-        path = f"$.graph.edges[{position}]"
         for name, end in (("source", source), ("target", target)):
             if end not in graph.index:
-                yield f"{path}.{name}", f"{end!r} must be the id of a resource, and is not"
+                yield f"{_edge(position)}.{name}", f"{end!r} must be the id of a resource, and is not"
         if source == target:
-            yield path, f"it must join two different resources, and joins {source!r} to itself"
+            yield _edge(position), f"it must join two different resources, and joins {source!r} to itself"
         edge = (source, target) if graph.directed else frozenset((source, target))
         if first_at.setdefault(edge, position) < position:
-            yield path, f"it must be listed once, and is entry {first_at[edge]} too"
+            yield _edge(position), f"it must be listed once, and is entry {first_at[edge]} too"
 
 
 @fault_rule(

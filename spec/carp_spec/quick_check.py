@@ -6,6 +6,7 @@ them: of instances with groups, or stops on the way, and of plans with something
 
 from collections.abc import Sequence
 from itertools import chain, repeat
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from carp_spec.model import Instance, Plan
@@ -38,8 +39,8 @@ def breaks_no_rule(instance: Instance, plans: Sequence[Plan]) -> bool:
         return False
     visits = list(chain.from_iterable(plan.visits for plan in plans))
     index, unknown = dict(graph.index), len(graph.resources)
-    places = list(map(index.get, [each.resource for each in visits], repeat(unknown)))
-    enters, leaves = [each.enter for each in visits], [each.leave for each in visits]
+    places = list(map(index.get, map(attrgetter("resource"), visits), repeat(unknown)))
+    enters, leaves = list(map(attrgetter("enter"), visits)), list(map(attrgetter("leave"), visits))
     left = [each for each in leaves if each is not None]
     durations = [each.duration for each in graph.resources]
     of_robots = [(each.release, each.pace, each.stops[0].service) for each in robots]
@@ -91,9 +92,10 @@ def _moves_do_not_meet(instance: Instance, source: "Longs", target: "Longs", tic
     """Whether all are moves of the graph, and none comes from where another goes at the same tick, and the reverse."""
     import numpy as np  # noqa: PLC0415 - slow to load
 
-    index, size = instance.graph.index, len(instance.graph.resources)
-    ends = np.array([(index[a], index[b]) for a, b in instance.graph.moves], np.int64).reshape(-1, 2)
-    moves = np.sort(ends[:, 0] * size + ends[:, 1])
+    graph, size = instance.graph, len(instance.graph.resources)
+    ends = map(dict(graph.index).__getitem__, chain.from_iterable(graph.edges))
+    one, other = np.fromiter(ends, np.int64).reshape(-1, 2).T
+    moves = np.sort(np.concatenate([one * size + other, *([] if graph.directed else [other * size + one])]))
     made, reverse = source * size + target, target * size + source
     if not np.isin(made, moves).all():
         return False
