@@ -1,7 +1,6 @@
 """The trusted base of each verdict of carproof, with its lines of code."""
 
 import io
-import re
 import tokenize
 from pathlib import Path
 
@@ -66,16 +65,6 @@ def lines_of_code(path: Path) -> int:
         if token.type not in {tokenize.COMMENT, tokenize.NL}:
             begins = token.type in {tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT}
     return len(lines)
-
-
-def kernel_lines(path: Path) -> list[str]:
-    """The lines of a file in Coq or OCaml that hold more than a comment; comments may be nested."""
-    code, depth = [], 0
-    for part in re.split(r"(\(\*|\*\)|\n)", path.read_text()):
-        depth += (part == "(*") - (part == "*)")
-        if part == "\n" or (depth == 0 and part != "*)"):
-            code.append(part)
-    return [line for line in "".join(code).split("\n") if line.strip()]
 
 
 def table() -> str:

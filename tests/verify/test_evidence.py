@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import pytest
+from tests.verify.support import UNSUPPORTED, support_of_rules
 
-from carp_verify.support import UNSUPPORTED, support_of_rules
 from carproof.registry import RULES
 from carproof.testing.vectors import vectors
 

@@ -2,6 +2,7 @@
 
 import re
 from functools import partial
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -94,9 +95,8 @@ def test_every_failure_is_reported() -> None:
 
 
 def test_the_theorems_are_those_that_coq_is_asked_about() -> None:
-    listed = (KERNEL / "theorems.txt").read_text().split()
-    assert {f"{each.module}.{each.name}" for each in THEOREMS} == set(listed)
-    assert len(THEOREMS) == len(listed)
+    text = files("carp_verify").joinpath("theorems.txt").read_text()
+    assert [f"{each.module}.{each.name}" for each in THEOREMS] == re.findall(r"^[A-Z].*", text, re.MULTILINE)
     assert not {each.name for each in THEOREMS} & set(MODULES)
 
 

@@ -4,10 +4,20 @@ import re
 from pathlib import Path
 
 import pytest
-from docs.trusted_base import CHECK, KERNEL, VERDICTS, kernel_lines, module_file
+from docs.trusted_base import CHECK, KERNEL, VERDICTS, module_file
 from tests.verify.kernel_mutants import mutants, mutated
 
 OURS = r"(?:carp_verify|carp_spec(?=\.documents))"
+
+
+def kernel_lines(path: Path) -> list[str]:
+    """The lines of a file in Coq or OCaml that hold more than a comment; comments may be nested."""
+    code, depth = [], 0
+    for part in re.split(r"(\(\*|\*\)|\n)", path.read_text()):
+        depth += (part == "(*") - (part == "*)")
+        if part == "\n" or (depth == 0 and part != "*)"):
+            code.append(part)
+    return [line for line in "".join(code).split("\n") if line.strip()]
 
 
 def source(name: str) -> str:
