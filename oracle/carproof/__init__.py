@@ -100,9 +100,6 @@ if TYPE_CHECKING:
     from carproof.api.searching import optimality_gap as optimality_gap
     from carproof.api.searching import optimum as optimum
     from carproof.api.searching import write_proof as write_proof
-    from carproof.api.viewing import view as view
-    from carproof.api.viewing import view_chart as view_chart
-    from carproof.api.viewing import view_map as view_map
     from carproof.conform.python import LevelName as LevelName
     from carproof.conform.python import conforms as conforms
     from carproof.conform.run import Report as Report
@@ -128,6 +125,9 @@ if TYPE_CHECKING:
     from carproof.layouts import import_layout as import_layout
     from carproof.planner_options import planner_named as planner_named
     from carproof.registry import RULES as RULES
+    from carproof.viewer.page import view as view
+    from carproof.viewer.stills import view_chart as view_chart
+    from carproof.viewer.stills import view_map as view_map
 
 __all__: list[str]
 __version__: str

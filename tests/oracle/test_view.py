@@ -27,10 +27,10 @@ from carproof.viewer import limits
 from carproof.viewer.chart_picture import TimeScale
 from carproof.viewer.colours import LIGHT, LOOKS
 from carproof.viewer.lanes import area, lanes, spots
-from carproof.viewer.page import page as whole_page
+from carproof.viewer.page import view
 from carproof.viewer.placement import UNIT, placement
 from carproof.viewer.samples import FOLDER, sample_pictures
-from carproof.viewer.stills import map_still
+from carproof.viewer.stills import view_map
 
 FEWEST_PIXELS = 30
 OUTSIDE = re.compile(r"""(?:src|href|url|action)\s*[=(]\s*["']?(?!#|data:)[a-z]*:?//""", re.IGNORECASE)
@@ -122,7 +122,7 @@ def test_one_way_moves_are_arrows(carproof: Run, tmp_path: Path) -> None:
 
 def test_a_plant_has_its_lanes_groups_stops_and_headings() -> None:
     instance, plans = plant()
-    scene = scene_of(whole_page(instance, plans, "plant").decode())
+    scene = scene_of(view(instance, plans, title="plant").decode())
     places = {place["label"]: place for place in scene["places"]}
     (ax, ay), (bx, by), (cx, cy) = (places[each]["at"] for each in "abc")
     assert ax < bx == cx
@@ -146,7 +146,7 @@ def test_the_still_of_a_plant_shows_robots_along_lanes_with_headings_and_service
     instance, plans = plant()
     seen = []
     for tick in (1, 2, 3, 5, 9):
-        robot = picture_of(map_still(instance, plans, tick, "plant").decode())[-1][0]
+        robot = picture_of(view_map(instance, plans, at=tick, title="plant").decode())[-1][0]
         x, y, _ = (int(each.rstrip("e-2")) for each in re.findall(r"[\d]+(?:e-2)?", robot.get("transform", "")))
         nose = robot.find(f"{SVG}path[@class='nose']")
         assert nose is not None

@@ -17,8 +17,8 @@ from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solu
 from carproof import Settings, Trace, import_layout, read_instance, read_solution
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.viewer.map_picture import ROBOT_RADIUS
-from carproof.viewer.page import page
-from carproof.viewer.stills import map_still
+from carproof.viewer.page import view
+from carproof.viewer.stills import view_map
 
 LATER = 30
 FEWEST_FRAMES = 30
@@ -36,7 +36,7 @@ def driver(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chrome]:
 
 def opened(driver: Chrome, folder: Path, instance: Instance, solution: Solution, width: int = 1280) -> Page:
     file = folder / "page.html"
-    file.write_bytes(page(instance, solution, "town.json"))
+    file.write_bytes(view(instance, solution, title="town.json"))
     return Page(driver, file, width)
 
 
@@ -103,7 +103,7 @@ def test_the_page_and_the_still_agree_at_every_tick(
 ) -> None:
     shown = opened(driver, tmp_path, *town)
     for tick in (0, 1, 7, 15):
-        still = picture_of(map_still(*town, tick, "town").decode())
+        still = picture_of(view_map(*town, at=tick, title="town").decode())
         assert shown.robots() == {each.findtext(f"{SVG}title"): placed(each.get("transform", "")) for each in still[-1]}
         shown.script("document.getElementById('forward').click()")
         for _ in range({0: 0, 1: 5, 7: 7, 15: 0}[tick]):
@@ -113,7 +113,7 @@ def test_the_page_and_the_still_agree_at_every_tick(
 def test_the_page_and_the_still_agree_on_a_plant(driver: Chrome, tmp_path: Path) -> None:
     shown = opened(driver, tmp_path, *plant())
     for tick in range(14):
-        still = picture_of(map_still(*plant(), tick, "plant").decode())
+        still = picture_of(view_map(*plant(), at=tick, title="plant").decode())
         (drawn,) = shown.robots().values()
         assert drawn == pytest.approx(placed(still[-1][0].get("transform", "")), abs=1)
         shown.script("document.getElementById('forward').click()")
@@ -223,7 +223,7 @@ def test_an_instance_alone_is_a_map_without_a_clock(
     driver: Chrome, tmp_path: Path, town: tuple[Instance, Solution]
 ) -> None:
     file = tmp_path / "page.html"
-    file.write_bytes(page(town[0], None, "town.json"))
+    file.write_bytes(view(town[0], title="town.json"))
     shown = Page(driver, file)
     assert shown.text("verdict") == "an instance without plans"
     assert shown.script("return document.querySelector('footer').clientHeight") == 0
@@ -332,7 +332,7 @@ def test_robots_are_where_the_trace_says_and_rings_where_they_were_to_be(driver:
     instance, solution = rotation()
     happened = Trace(1, tuple(Plan(plan.robot, (Visit(plan.visits[0].resource, 0, None),)) for plan in solution.plans))
     file = tmp_path / "page.html"
-    file.write_bytes(page(instance, solution, "town.json", happened))
+    file.write_bytes(view(instance, solution, title="town.json", trace=happened))
     shown = Page(driver, file)
     start = shown.robots()
     shown.press(Keys.ARROW_RIGHT, "l")

@@ -12,8 +12,8 @@ from carp_spec import Instance, Plan, Solution, Visit, judge
 from carp_spec.windows import occupancy
 from carproof.testing.strategies import instances
 from carproof.viewer.lanes import lanes, lasts, occupations
-from carproof.viewer.page import page
-from carproof.viewer.stills import chart_still, map_still
+from carproof.viewer.page import view
+from carproof.viewer.stills import view_chart, view_map
 
 TICKS = st.integers(-5, 20)
 LATEST = 25
@@ -36,7 +36,7 @@ def nonsense(draw: st.DrawFn) -> tuple[Instance, Solution]:
 @given(nonsense())
 def test_the_page_shows_every_visit_and_violation(case: tuple[Instance, Solution]) -> None:
     instance, solution = case
-    scene = scene_of(page(instance, solution, "any").decode())
+    scene = scene_of(view(instance, solution, title="any").decode())
     shown = sorted(
         (track["label"], scene["places"][scene["stands"][stand]["place"]]["label"], enter, str(leave))
         for track in scene["tracks"]
@@ -55,7 +55,7 @@ def test_the_page_shows_every_visit_and_violation(case: tuple[Instance, Solution
 @FEW
 @given(nonsense())
 def test_no_two_robots_stand_in_one_lane_at_a_time(case: tuple[Instance, Solution]) -> None:
-    scene = scene_of(page(*case, "any").decode())
+    scene = scene_of(view(*case, title="any").decode())
     assert none_overlap((stand, enter, leave) for track in scene["tracks"] for stand, enter, leave in track["stays"])
 
 
@@ -87,5 +87,5 @@ def test_the_stills_show_who_is_in_a_resource_of_the_map(case: tuple[Instance, S
         for plan in solution.plans
     ]
     on_the_map = [visits for visits in there if visits and visits[-1].resource in instance.graph.index]
-    assert len(picture_of(map_still(instance, solution, tick, "any").decode())[-1]) == len(on_the_map)
-    assert picture_of(chart_still(instance, solution, "any").decode()).get("class") == "chart"
+    assert len(picture_of(view_map(instance, solution, at=tick, title="any").decode())[-1]) == len(on_the_map)
+    assert picture_of(view_chart(instance, solution, title="any").decode()).get("class") == "chart"

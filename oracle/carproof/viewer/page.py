@@ -20,12 +20,18 @@ from carproof.viewer.map_picture import map_picture
 from carproof.viewer.scene_builder import make_scene
 from carproof.viewer.shapes import svg_text
 
+TITLE = "carproof"
 SCRIPTS = ("scene.js", "clock.js", "waits.js", "map.js", "chart.js", "lists.js", "main.js")
 UNSAFE_IN_HTML = {ord(c): f"\\u{ord(c):04x}" for c in "<>&\u2028\u2029"}
 
 
-def page(instance: Instance, solution: Solution | None, title: str, trace: Trace | None = None) -> bytes:
-    """The page of a solution, and of what has happened if there is a trace; without a solution, of the instance."""
+def view(
+    instance: Instance, solution: Solution | None = None, *, title: str = TITLE, trace: Trace | None = None
+) -> bytes:
+    """One HTML file that shows a solution, or starts and goals alone; with a trace, also what has happened.
+
+    Raises `Refusal` for malformed input, and for what is too large to show.
+    """
     scene = make_scene(instance, solution, title, trace)
     picture = map_picture(instance.graph, scene)
     style = variables() + page_file("page.css")

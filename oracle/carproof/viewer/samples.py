@@ -8,7 +8,7 @@ from carp_reference.execution import order_of
 from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.viewer.dependency_picture import dependency_still
-from carproof.viewer.stills import chart_still, map_still
+from carproof.viewer.stills import view_chart, view_map
 
 FOLDER = Path(__file__).parent.parent.parent / "pictures"
 TITLE = "8 robots on a grid of 6 x 4"
@@ -29,10 +29,10 @@ def sample_pictures() -> Mapping[str, bytes]:
     solution = plan(instance, Carp())
     swap, swapped = finding()
     return {
-        "finding-map.svg": map_still(swap, swapped, 1, "two robots exchange their cells"),
-        "finding-chart.svg": chart_still(swap, swapped, "two robots exchange their cells"),
-        "map.svg": map_still(instance, solution, TICK, TITLE),
-        "chart.svg": chart_still(instance, solution, TITLE),
+        "finding-map.svg": view_map(swap, swapped, at=1, title="two robots exchange their cells"),
+        "finding-chart.svg": view_chart(swap, swapped, title="two robots exchange their cells"),
+        "map.svg": view_map(instance, solution, at=TICK, title=TITLE),
+        "chart.svg": view_chart(instance, solution, title=TITLE),
         "dependencies.svg": dependency_still(order_of(instance, solution), TITLE),
     }
 

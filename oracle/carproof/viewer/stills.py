@@ -7,20 +7,21 @@ from carproof.viewer.chart_picture import chart_picture
 from carproof.viewer.colours import PAINT, fixed
 from carproof.viewer.limits import refuse_more, refuse_tick
 from carproof.viewer.map_picture import still_map
+from carproof.viewer.page import TITLE
 from carproof.viewer.scene_builder import make_scene
 from carproof.viewer.shapes import svg_text
 
 
-def map_still(instance: Instance, solution: Solution | None, tick: int, title: str) -> bytes:
-    """The map at a tick, or without a solution with starts and goals alone."""
-    refuse_tick(tick, "--at")
+def view_map(instance: Instance, solution: Solution | None = None, *, at: int = 0, title: str = TITLE) -> bytes:
+    """An SVG file of the map at a tick, or without a solution of starts and goals. Raises as `view` does."""
+    refuse_tick(at, "--at")
     scene = make_scene(instance, solution, title)
-    when = "starts and goals" if scene.alone else f"at tick {tick}"
-    return still(still_map(instance.graph, scene, tick), f"{scene.title} {when}")
+    when = "starts and goals" if scene.alone else f"at tick {at}"
+    return still(still_map(instance.graph, scene, at), f"{scene.title} {when}")
 
 
-def chart_still(instance: Instance, solution: Solution, title: str) -> bytes:
-    """The chart of resources by time."""
+def view_chart(instance: Instance, solution: Solution, *, title: str = TITLE) -> bytes:
+    """An SVG file of resources by time. Raises as `view` does."""
     scene = make_scene(instance, solution, title)
     return still(chart_picture(scene), f"{scene.title}: resources by time")
 

@@ -7,13 +7,7 @@ from carp_spec import Refusal, ResourceId, Visit
 from carp_spec.documents.solutions import write_solution
 from carp_spec.requests import require_tick
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import (
-    InputFile,
-    Output,
-    naming,
-    read_bytes,
-    read_sound,
-)
+from carproof.command_line.files import InputFile, Output, naming, read_bytes, read_sound
 from carproof.command_line.options import asks_for_a_robot, examples, gives_plans
 from carproof.command_line.tables import print_line, print_table, remark
 from carproof.engines import engine_named

@@ -8,13 +8,7 @@ from carproof.api.executing import check_grants
 from carproof.api.executing import release as released_of
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, Output, naming, read_file, read_sound
-from carproof.command_line.options import (
-    examples,
-    instance_argument,
-    output_options,
-    solution_argument,
-    trace_argument,
-)
+from carproof.command_line.options import examples, instance_argument, output_options, solution_argument, trace_argument
 from carproof.command_line.tables import counted, print_line, print_table
 from carproof.command_line.time_left import time_left
 from carproof.execution.release_documents import (

@@ -11,9 +11,9 @@ from carproof.command_line.foreign import Problem, instance_and_perhaps_solution
 from carproof.command_line.options import examples, output_option
 from carproof.command_line.tables import print_table
 from carproof.viewer.limits import refuse_tick
-from carproof.viewer.page import page
+from carproof.viewer.page import view
 from carproof.viewer.scene_builder import span
-from carproof.viewer.stills import chart_still, map_still
+from carproof.viewer.stills import view_chart, view_map
 
 PAGE, PICTURE = (".html", ".htm"), ".svg"
 
@@ -67,15 +67,15 @@ def command(problem: Problem, at: int | None, chart: bool, trace: str | None, fi
     with naming(problem.solution or problem.instance or problem.names[0]):
         if solution is None:
             is_picture = file is not None and file.suffix.lower() == PICTURE
-            drawn = map_still(instance, None, 0, title) if is_picture else page(instance, None, title)
+            drawn = view_map(instance, title=title) if is_picture else view(instance, title=title)
         elif chart:
-            drawn = chart_still(instance, solution, title)
+            drawn = view_chart(instance, solution, title=title)
         elif at is not None:
             refuse_tick(at, "--at")
             refuse_tick_without_plans(at, *span(instance, solution))
-            drawn = map_still(instance, solution, at, title)
+            drawn = view_map(instance, solution, at=at, title=title)
         else:
-            drawn = page(instance, solution, title, happened)
+            drawn = view(instance, solution, title=title, trace=happened)
     Output(file, as_json=file is None).write(drawn)
     if file is not None:
         print_table(["written", "bytes"], [[file, len(drawn)]], numbers=["bytes"])

@@ -20,7 +20,7 @@ from carproof.conform.reporting.wording import verdict
 from carproof.conform.run import Report
 from carproof.rules import ALL_RULES
 from carproof.viewer.colours import variables
-from carproof.viewer.page import page
+from carproof.viewer.page import view
 
 COLUMNS = "passed", "gave up", "skipped", "not asked", "wrong answer", "crash", "timeout", "protocol error"
 POLICY = "base-uri 'none'; form-action 'none'; connect-src 'none'; object-src 'none'; font-src 'none'; img-src data:"
@@ -98,7 +98,7 @@ def _failure(outcome: Outcome, folder: Path | None, origin: Origin) -> str:
 def _frame(outcome: Outcome, rule: str) -> str:
     """The viewer with the plans; where they are too large for it, a sentence that says so."""
     try:
-        shown = page(outcome.case.instance, judged_solution(outcome), rule).decode()
+        shown = view(outcome.case.instance, judged_solution(outcome), title=rule).decode()
     except Refusal as refusal:
         return f"<p>{escape(refusal.message)}</p>"
     return f'<iframe title="{escape(rule)}" sandbox="allow-scripts" loading="lazy" srcdoc="{escape(shown)}"></iframe>'

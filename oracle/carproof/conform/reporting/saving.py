@@ -26,7 +26,7 @@ from carproof.protocol.ops.op import made
 from carproof.protocol.ops.planning import QueryDocument
 from carproof.rules import ALL_RULES
 from carproof.testing.vectors import vectors
-from carproof.viewer.stills import chart_still, map_still
+from carproof.viewer.stills import view_chart, view_map
 
 SCEN_NAME = "instance.scen"
 FILES = (
@@ -69,12 +69,12 @@ def save(outcome: Outcome, folder: Path, origin: Origin = Origin()) -> None:
     files = {
         "finding.txt": _finding_text(outcome, folder, origin).encode(),
         "map.txt": map_drawing(case.instance).encode(),
-        "map.svg": _drawn(lambda: map_still(case.instance, judged, _first_tick(outcome), _title(outcome))),
+        "map.svg": _drawn(lambda: view_map(case.instance, judged, at=_first_tick(outcome), title=_title(outcome))),
         "instance.json": write_instance(case.instance),
         "request.json": msgspec.json.encode({"id": 1, "op": case.op, **request_fields(case)}) + b"\n",
         "vector.json": msgspec.json.format(msgspec.json.encode(vectors_document(outcome))) + b"\n",
         "picture.txt": picture_of(outcome).encode(),
-        "picture.svg": _drawn(lambda: chart_still(case.instance, judged, _title(outcome))),
+        "picture.svg": _drawn(lambda: view_chart(case.instance, judged, title=_title(outcome))),
         "solution.json": write_solution(judged),
     }
     if case.classical:
