@@ -79,6 +79,7 @@ class PlannedFleet:
         self._numbered = self._state.guides.goal.size
         self._order = np.zeros(0, np.int32)
         self._records = np.full(len(instance.robots), NONE, np.int32)
+        self._noted = self._records
         self._plans: dict[int, Plan] = {}
         self._many = MANY
         self._options: Neighbourhood | None = None
@@ -175,16 +176,14 @@ class PlannedFleet:
         leave = self._state.records.leave[self._records[self._order]]
         return tuple(self._order[(leave != NEVER) & (leave <= now - self._state.gap)].tolist())
 
-    @property
-    def records(self) -> Ints:
-        """The number by which the plan of each robot is known, `NONE` without a plan."""
-        return self._records.copy()
+    def note(self) -> None:
+        """Note the plans as they are now."""
+        self._noted = self._records.copy()
 
-    def changed_since(self, records: Ints) -> tuple[PlanColumns, ...]:
-        """The plans that have another number than they had then, in planning order; robots may have come since."""
-        is_other = self._records != NONE
-        is_other[: records.size] &= self._records[: records.size] != records
-        return tuple(map(self._columns, self._records[self._order[is_other[self._order]]].tolist()))
+    def changed(self) -> tuple[PlanColumns, ...]:
+        """The plans that are not those that were noted, in planning order; robots may have come since."""
+        held = self._records[self._order]
+        return tuple(map(self._columns, held[held != self._noted[self._order]].tolist()))
 
     def replan(self, plans: Sequence[Plan], order: Sequence[RobotId]) -> None:
         """Take over other plans of robots that have one, and the planning order of all.
@@ -575,7 +574,9 @@ class PlannedFleet:
         self._take(state)
         more = size - len(self._ids)
         self._ids += more * [""]
-        self._records = np.concatenate([self._records, np.full(more, NONE, np.int32)])
+        nothing = np.full(more, NONE, np.int32)
+        self._records = np.concatenate([self._records, nothing])
+        self._noted = np.concatenate([self._noted, nothing])
 
     def _withdraw(self, records: Ints) -> None:
         self._call(lambda: passes.withdraw_all(self._native, records))
@@ -654,6 +655,9 @@ class PlannedFleet:
         """Keep only the records of the plans held."""
         used = self._state.records.used
         kept = np.sort(self._records[self._order])
+        number = np.full(int(used[0]) + 1, NONE, np.int32)  # the last is that of no record
+        number[kept] = np.arange(kept.size)
+        self._noted = number[self._noted]
         keep_records(self._native, kept)
         self._plans = {new: self._plans[int(old)] for new, old in enumerate(kept) if int(old) in self._plans}
         self._records = self._state.reserved.copy()

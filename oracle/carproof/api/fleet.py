@@ -224,14 +224,13 @@ class Fleet:
             self._require_little("$.robots", max(len(robot.stops) for robot in robots))
         unplanned = []
         with self._changing() as core:
-            core.forget_old_records()
-            before = core.records
+            core.note()
             for number, robot in enumerate(robots, self._known.count):
                 place = core.enlist(robot)
                 if not core.add(place, self._known.from_tick(now), self._planner, number):
                     core.dismiss([place])
                     unplanned.append(robot.id)
-            changed = [plan for plan in core.changed_since(before) if plan != self._known.plans.get(plan.robot)]
+            changed = [plan for plan in core.changed() if plan != self._known.plans.get(plan.robot)]
             change = Change(now, tuple(changed), tuple(unplanned), ())
             return self._take_over(core, change, self._before(audit), {robot.id: robot for robot in robots})
 
@@ -253,11 +252,10 @@ class Fleet:
             self._made().require_robots(replace(self._known.empty, robots=(further,)))
         self._require_little("$.stops", len(further.stops))
         with self._changing() as core:
-            core.forget_old_records()
-            held, plan = core.records, self._known.plans[robot].plan
-            at = self._known.from_tick(now)
+            core.note()
+            plan, at = self._known.plans[robot].plan, self._known.from_tick(now)
             is_found = core.assign(further, before, plan, at, self._planner, self._known.numbers[robot])
-            changed = [each for each in core.changed_since(held) if each != self._known.plans[each.robot]]
+            changed = [each for each in core.changed() if each != self._known.plans[each.robot]]
             change = Change(now, tuple(changed), () if is_found else (robot,), ())
             return self._take_over(core, change, self._before(audit), {robot: further} if is_found else {})
 
