@@ -22,7 +22,6 @@ from carp_optimized.state.arrays import (
     BOUND,
     KEPT,
     LARGEST,
-    NEVER,
     NONE,
     PREFIX,
     SHARED,
@@ -116,9 +115,9 @@ class PlannedFleet:
         """The cost of a robot's shortest path on the empty graph; 0 if none exists."""
         return self._call(lambda: passes.shortest(self._native, robot))
 
-    def require_robots(self, instance: Instance) -> None:
-        """Raise `Refusal` unless the robots of an instance with the same resource graph can be taken up."""
-        encoding.refuse_robots(instance, self._state.longest)
+    def require_robots(self, robots: Sequence[Robot]) -> None:
+        """Raise `Refusal` unless the robots can be taken up."""
+        encoding.refuse_robots(robots, self._state.longest)
 
     def enlist(self, robot: Robot) -> int:
         """Take up a robot of a new id, without a plan yet; its index, which no other has while it is there."""
@@ -147,13 +146,14 @@ class PlannedFleet:
             self._take(encoding.with_stops(self._state, robot))
         encoding.write_robot(self._state, self.instance, robot, index, self._destinations)
 
-    def dismiss(self, robots: Sequence[int]) -> None:
-        """Forget robots, with the plans of those that have one; others may get their indices."""
+    def dismiss(self, robots: Sequence[int]) -> tuple[RobotId, ...]:
+        """Forget robots, with the plans of those that have one; others may get their indices. Their ids."""
         self.withdraw(robots)
         for index in robots:
             del self._index[self._ids[index]]
             self._vacant.append(index)
             encoding.forget_stops(self._state, index)
+        return tuple(map(self._ids.__getitem__, robots))
 
     def withdraw(self, robots: Sequence[int]) -> None:
         """Take the plans of robots away, of those that have one."""
@@ -174,7 +174,7 @@ class PlannedFleet:
         if self._state.parks:
             return ()
         leave = self._state.records.leave[self._records[self._order]]
-        return tuple(self._order[(leave != NEVER) & (leave <= now - self._state.gap)].tolist())
+        return tuple(self._order[leave <= now - self._state.gap].tolist())
 
     def note(self) -> None:
         """Note the plans as they are now."""

@@ -355,6 +355,37 @@ def test_what_is_refused_changes_nothing(monkeypatch: pytest.MonkeyPatch, name: 
     assert_alike(fleet, twin)
 
 
+ODD: tuple[object, ...] = (
+    True,
+    1.0,
+    -1,
+    0,
+    1,
+    "a",
+    "nowhere",
+    None,
+    (),
+    [],
+    (Stop("b", -1),),
+    (Stop("q"),),
+    [Stop("b")],
+)
+
+
+@pytest.mark.parametrize("field", ["id", "start", "stops", "release", "pace"])
+def test_one_robot_is_refused_as_several_are(field: str) -> None:
+    for value in ODD:
+        odd = Robot("x", "a", "b")
+        object.__setattr__(odd, field, value)
+        refusals = []
+        for others in ((), (Robot("y", "a", "b"),)):
+            try:
+                Fleet(lane()).add(odd, *others)
+            except Refusal as refusal:
+                refusals.append((refusal.rule, refusal.path, refusal.message))
+        assert refusals in ([], 2 * refusals[:1]), value
+
+
 def assert_alike(fleet: Fleet, twin: Fleet) -> None:
     """Both know the same, and answer alike."""
     assert (fleet.now, fleet.instance, fleet.solution) == (twin.now, twin.instance, twin.solution)

@@ -1,7 +1,7 @@
 """Encodes an instance as the arrays of a state; numbers that these cannot hold are refused."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import TypeAlias
 
@@ -53,9 +53,9 @@ def refuse_what_is_too_large(instance: Instance) -> None:
     _refuse(_too_large(instance))
 
 
-def refuse_robots(instance: Instance, longest: int) -> None:
-    """The same for the robots alone, which come to a fleet, where that is the longest duration."""
-    _refuse(_large_robots(instance, longest))
+def refuse_robots(robots: Sequence[Robot], longest: int) -> None:
+    """The same for robots that come to a fleet, where that is the longest duration."""
+    _refuse(_large_robots(robots, longest))
 
 
 def _refuse(faults: Iterator[Fault]) -> None:
@@ -83,11 +83,11 @@ def _too_large(instance: Instance) -> Iterator[Fault]:
             if abs(value) > LARGEST_COORDINATE:
                 message = f"{name} must be between -{LARGEST_COORDINATE} and {LARGEST_COORDINATE}, and is {value}"
                 yield Fault("limit/ticks", f"{path}.{name}", message)
-    yield from _large_robots(instance, longest)
+    yield from _large_robots(instance.robots, longest)
 
 
-def _large_robots(instance: Instance, longest: int) -> Iterator[Fault]:
-    for position, robot in enumerate(instance.robots):
+def _large_robots(robots: Sequence[Robot], longest: int) -> Iterator[Fault]:
+    for position, robot in enumerate(robots):
         path = f"$.robots[{position}]"
         if robot.release > LARGEST:
             yield Fault(

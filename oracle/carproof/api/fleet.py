@@ -1,12 +1,11 @@
 """A fleet in memory: news goes in, and the plans that changed come out."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from carp_spec import Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Solution, Stop
+from carp_spec import Instance, Neighbourhood, Plan, Refusal, ResourceId, Robot, RobotId, Solution, Stop
 from carp_spec.documents.solutions import PlanColumns
 from carp_spec.execution.traces import Trace
 from carp_spec.inputs.options import require_planner
@@ -222,17 +221,12 @@ class Fleet:
             raise Refusal("limit", "$.robots", FEW_ROBOTS.id, message)
         if robots:
             self._require_little("$.robots", max(len(robot.stops) for robot in robots))
-        unplanned = []
-        with self._changing() as core:
-            core.note()
-            for number, robot in enumerate(robots, self._known.count):
-                place = core.enlist(robot)
-                if not core.add(place, self._known.from_tick(now), self._planner, number):
-                    core.dismiss([place])
-                    unplanned.append(robot.id)
-            changed = [plan for plan in core.changed() if plan != self._known.plans.get(plan.robot)]
-            change = Change(now, tuple(changed), tuple(unplanned), ())
-            return self._take_over(core, change, self._before(audit), {robot.id: robot for robot in robots})
+        core, unplanned = self._taken(), list[RobotId]()
+        for number, robot in enumerate(robots, self._known.count):
+            place = core.enlist(robot)
+            if not core.add(place, self._known.from_tick(now), self._planner, number):
+                unplanned.extend(core.dismiss([place]))
+        return self._take_over(core, now, self._before(audit), unplanned, {robot.id: robot for robot in robots})
 
     def assign(self, robot: RobotId, stops: Sequence[Stop], now: int | None = None, *, audit: bool = False) -> Change:
         """Give a robot that is under way or parked further stops, behind those that it has, as `carproof.assign` does.
@@ -249,15 +243,12 @@ class Fleet:
             raise Refusal("request", "$.robot", OWN_ROBOTS.id, message)
         further = further_stops(self._known.empty, before, stops)
         with about_stops(0):
-            self._made().require_robots(replace(self._known.empty, robots=(further,)))
+            self._made().require_robots((further,))
         self._require_little("$.stops", len(further.stops))
-        with self._changing() as core:
-            core.note()
-            plan, at = self._known.plans[robot].plan, self._known.from_tick(now)
-            is_found = core.assign(further, before, plan, at, self._planner, self._known.numbers[robot])
-            changed = [each for each in core.changed() if each != self._known.plans[each.robot]]
-            change = Change(now, tuple(changed), () if is_found else (robot,), ())
-            return self._take_over(core, change, self._before(audit), {robot: further} if is_found else {})
+        core, plan, at = self._taken(), self._known.plans[robot].plan, self._known.from_tick(now)
+        if core.assign(further, before, plan, at, self._planner, self._known.numbers[robot]):
+            return self._take_over(core, now, self._before(audit), new={robot: further})
+        return self._take_over(core, now, self._before(audit), unplanned=[robot])
 
     def forget(self) -> None:
         """Forget what is done by the tick `now`: robots start in the visits under way, as of when they entered them."""
@@ -294,7 +285,7 @@ class Fleet:
         others = tuple(plan for plan in held_up(instance, solution, trace).plans if plan.robot not in told)
         whole = Trace(now, (*trace.plans, *until(Trace(now, others), now).plans))
         after = retime(instance, solution, whole)
-        return self._replan(now, after, after.plans if audit else None, now)
+        return self._replan(now, after, after.plans if audit else None, told=now)
 
     def polish(
         self, *, iterations: int | None = None, seconds: float | None = None, seed: int = 0, audit: bool = False
@@ -303,17 +294,15 @@ class Fleet:
         polish = engine_named("optimized").polish
         before = self.instance, self.solution
         better = polish(*before, iterations=iterations, seconds=seconds, seed=seed, now=self._known.from_tick(self.now))
-        return self._replan(self.now, better, self._before(audit), self._known.told)
+        return self._replan(self.now, better, self._before(audit))
 
     def _before(self, audit: bool) -> Sequence[Plan] | None:
         return [each.plan for each in self._known.plans.values()] if audit else None
 
-    def _replan(self, now: int, solution: Solution, before: Sequence[Plan] | None, told: int) -> Change:
-        changed = [plan for plan in solution.plans if plan != self._known.plans[plan.robot].plan]
-        with self._changing() as core:
-            core.replan(changed, solution.order)
-            change = Change(now, tuple(map(PlanColumns.of, changed)), (), ())
-            return self._take_over(core, change, before, told=told)
+    def _replan(self, now: int, solution: Solution, before: Sequence[Plan] | None, told: int | None = None) -> Change:
+        core = self._taken()
+        core.replan([plan for plan in solution.plans if plan != self._known.plans[plan.robot].plan], solution.order)
+        return self._take_over(core, now, before, told=told)
 
     def _tick(self, now: int | None) -> int:
         if now is None:
@@ -329,11 +318,14 @@ class Fleet:
     def _require_new(self, robots: tuple[Robot, ...], now: int) -> None:
         if not robots:
             return
-        require_shape(robots, tuple[Robot, ...], "$.robots")
-        alone = replace(self._known.empty, robots=robots)
-        for fault in (fault for rule in ROBOT_RULES for fault in rule(alone)):
-            raise Refusal("document", fault.path, fault.rule, fault.message)
-        self._made().require_robots(alone)
+        places = self._known.empty.graph.index
+        if len(robots) != 1 or not _is_right(robots[0], places):
+            require_shape(robots, tuple[Robot, ...], "$.robots")
+            alone = replace(self._known.empty, robots=robots)
+            for rule in ROBOT_RULES:
+                for fault in rule(alone):
+                    raise Refusal("document", fault.path, fault.rule, fault.message)
+        self._made().require_robots(robots)
         for place, robot in enumerate(robots):
             path = f"$.robots[{place}]"
             if robot.id in self._known.robots:
@@ -351,12 +343,11 @@ class Fleet:
             message = f"the plans must have at most {MOST_VISITS} visits, and have more; forgetting drops those done"
             raise Refusal("limit", path, FEW_ROBOTS.id, message)
 
-    @contextmanager
-    def _changing(self) -> Iterator["PlannedFleet"]:
-        """The compiled fleet; after an error it is made again from what was known."""
+    def _taken(self) -> "PlannedFleet":
+        """The compiled fleet, its plans noted; unless a change is taken over, it is made again from what is known."""
         core, self._core = self._made(), None
-        yield core
-        self._core = core
+        core.note()
+        return core
 
     def _made(self) -> "PlannedFleet":
         if self._core is None:
@@ -366,8 +357,9 @@ class Fleet:
     def _take_over(
         self,
         core: "PlannedFleet",
-        change: Change,
+        now: int,
         before: Sequence[Plan] | None,
+        unplanned: Sequence[RobotId] = (),
         new: Mapping[RobotId, Robot] = NOBODY,
         told: int | None = None,
     ) -> Change:
@@ -376,20 +368,20 @@ class Fleet:
         Robots that are `new` have come or have other stops. With the plans before, which robots have followed until
         then, the changed ones are audited.
         """
-        known, ended = self._known, core.ended(change.now)
+        known = self._known
+        changed = tuple(each for each in core.changed() if each != known.plans.get(each.robot))
         come = {id: number for number, id in enumerate((id for id in new if id not in known.robots), known.count)}
         robots, numbers = {**known.robots, **new}, {**known.numbers, **come}
-        plans = {**known.plans, **{each.robot: each for each in change.columns}}
-        left = tuple(map(core.places[1].__getitem__, ended))
-        core.dismiss(ended)
-        for id in (*left, *(each for each in change.unplanned if each not in plans)):
+        plans = {**known.plans, **{each.robot: each for each in changed}}
+        left = core.dismiss(core.ended(now))
+        for id in (*left, *(each for each in unplanned if each in come)):
             del robots[id], numbers[id]
             plans.pop(id, None)
         last = known.told if told is None else told
-        after = _Known(known.empty, change.now, robots, plans, *core.places, numbers, known.count + len(come), last)
-        found = None if before is None else _audited(after, change.columns, before)
-        self._known = after
-        return Change(change.now, change.columns, change.unplanned, left, found)
+        after = _Known(known.empty, now, robots, plans, *core.places, numbers, known.count + len(come), last)
+        found = None if before is None else _audited(after, changed, before)
+        self._known, self._core = after, core
+        return Change(now, changed, tuple(unplanned), left, found)
 
 
 def _audited(known: _Known, changed: Sequence[PlanColumns], before: Sequence[Plan]) -> Audit:
@@ -397,6 +389,18 @@ def _audited(known: _Known, changed: Sequence[PlanColumns], before: Sequence[Pla
     return audit_changes(
         known.instance, sound, engine, {plan.robot for plan in changed}, before, known.from_tick(known.now)
     )
+
+
+def _is_right(robot: Robot, places: Container[ResourceId]) -> bool:
+    """Whether it is seen quickly that a robot with one stop has the right types and keeps the rules of robots."""
+    if type(robot) is not Robot or type(robot.stops) is not tuple or [*map(type, robot.stops)] != [Stop]:
+        return False
+    stop = robot.stops[0]
+    names, numbers = (robot.id, robot.start, stop.resource), (robot.release, robot.pace, stop.service)
+    if not ({*map(type, names)} <= {str, int} and {*map(type, numbers)} == {int}):
+        return False
+    is_there = robot.start in places and stop.resource in places
+    return is_there and robot.release >= 0 and robot.pace >= 1 and stop.service >= 0
 
 
 def _require_time(robot: Robot, now: int, path: str) -> None:

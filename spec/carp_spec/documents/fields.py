@@ -3,12 +3,12 @@
 A field of the model is described in its class alone: name, type, default, and for a number its `Number`.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, fields, is_dataclass
 from functools import cache, reduce
 from operator import attrgetter, or_
 from types import GenericAlias
-from typing import Annotated, Any, TypeVar, cast, get_args
+from typing import Annotated, Any, TypeAlias, TypeVar, cast, get_args
 
 import msgspec
 from msgspec import NODEFAULT, UNSET, UnsetType
@@ -17,6 +17,7 @@ from carp_spec.shapes import Number
 
 D = TypeVar("D", bound=msgspec.Struct)
 K = TypeVar("K")
+Fields: TypeAlias = Mapping[str, tuple[object, type[Any] | None]]
 
 
 def describes(kind: type[Any], *others: str) -> Callable[[type[D]], type[D]]:
@@ -62,31 +63,36 @@ def converted(source: Any, kind: Callable[..., K], **given: Any) -> K:  # noqa: 
 
     What is given has been converted.
     """
-    missing = (name for name in _fields(kind) if name not in given)
-    return kind(**given, **{name: next(iter(_column([source], kind, name))) for name in missing})
+    getters = _getters(cast("Any", type(source)), kind)
+    return kind(**given, **{name: get(source) for name, get in getters if name not in given})
 
 
 def all_converted(sources: Sequence[Any], kind: Callable[..., K]) -> tuple[K, ...]:
     """Each of the values of one class, converted."""
-    return tuple(map(kind, *(_column(sources, kind, name) for name in _fields(kind))))
-
-
-def _column(sources: Sequence[Any], kind: Callable[..., Any], name: str) -> Iterable[Any]:
-    """The values of one field; the default of the source's class becomes the other's."""
-    default, item = _fields(kind)[name]
-    source: Any = type(sources[0]) if sources else None
-    present = _fields(source) if sources else {}
-    if name not in present:
-        return [default] * len(sources)
-    values = map(attrgetter(name), sources)
-    left_out = present[name][0]
-    if item is None and default in (MISSING, left_out):
-        return values
-    return [default if each == left_out else each if item is None else all_converted(each, item) for each in values]
+    getters = _getters(cast("Any", type(sources[0])), kind) if sources else ()
+    return tuple(map(kind, *(map(get, sources) for _, get in getters))) if getters else ()
 
 
 @cache
-def _fields(kind: Any) -> Mapping[str, tuple[object, type[Any] | None]]:  # noqa: ANN401 - a class of fields
+def _getters(source: Any, kind: Any) -> Sequence[tuple[str, Callable[[Any], Any]]]:  # noqa: ANN401 - classes
+    """How to get each field of a class from a value of another; the default of one becomes that of the other."""
+    return [(name, _getter(name, *field, _fields(source))) for name, field in _fields(kind).items()]
+
+
+def _getter(name: str, default: object, item: type[Any] | None, present: Fields) -> Callable[[Any], Any]:
+    if name not in present:
+        return lambda _: default
+    get: Callable[[Any], Any] = attrgetter(name)
+    left_out, _ = present[name]
+    if item is not None:
+        return lambda source: default if get(source) == left_out else all_converted(get(source), item)
+    if default in (MISSING, left_out):
+        return get
+    return lambda source: default if (value := get(source)) == left_out else value
+
+
+@cache
+def _fields(kind: Any) -> Fields:  # noqa: ANN401 - a class of fields
     """The default of each field that is given, and the class of the items of one that holds values with fields."""
     if is_dataclass(kind):
         return {each.name: (each.default, _item(each.type)) for each in fields(kind) if each.init}
