@@ -55,8 +55,8 @@ def test_a_planner_without_a_feature_conforms_where_it_is_not_claimed(feature: s
 def test_a_planner_that_fails_where_a_goal_cannot_be_reached_is_asked_only_for_plans_that_exist() -> None:
     planner = fails_where(lambda instance: bool(carp_reference.plan(instance, Carp()).unplanned))
     assert conform(planner, whole(Claims())).conforms is False
-    asked: list[Case] = []
-    subject = Tampered(lambda case, reply: (asked.append(case), reply)[1])  # type: ignore[func-returns-value]
+    subject = Tampered(as_it_is)
+    asked = subject.cases
     assert conform(subject, of(Claims(solvable=True))).conforms
     assert {case.op for case in asked} == {*ASKED_OPS} - {"optimum"}
     assert all(is_solvable(case) for case in asked)
@@ -72,8 +72,8 @@ def test_a_robot_that_needs_another_order_can_have_a_plan() -> None:
 
 
 def test_only_a_claimed_feature_is_in_a_random_case() -> None:
-    asked: list[Case] = []
-    subject = Tampered(lambda case, reply: (asked.append(case), reply)[1])  # type: ignore[func-returns-value]
+    subject = Tampered(as_it_is)
+    asked = subject.cases
     assert conform(subject, of(Claims(frozenset({*FEATURES} - {"park"})))).conforms
     assert sum(case.stage == "random" for case in asked) == 24
     assert not [case for case in asked for name in {*FEATURES} - {"park"} if FEATURES[name](case)]
@@ -126,9 +126,8 @@ def test_a_case_is_left_out_where_it_has_a_feature_that_is_not_claimed(
 
 
 def test_who_does_not_claim_now_is_asked_about_no_robot_under_way() -> None:
-    asked: list[Case] = []
-    subject = Tampered(lambda case, reply: (asked.append(case), reply)[1])  # type: ignore[func-returns-value]
-    subject.ops = ("query", "add")
+    subject = Tampered(as_it_is, ("query", "add"))
+    asked = subject.cases
     assert conform(subject, of(Claims(frozenset({"now"})), examples=60)).conforms
     planned = [plan.robot == case.robot for case in asked for plan in case.solution.plans]
     assert planned

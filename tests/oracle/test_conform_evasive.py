@@ -73,24 +73,21 @@ def test_who_answers_anything_gives_wrong_answers(how: str, ops: str, level: Lev
 
 @pytest.mark.parametrize("level", [level for level in Level if level > Level.SOUND])
 def test_an_op_that_plans_nobody_shows_no_level_above_sound(level: Level) -> None:
-    subject = Tampered(as_it_is)
-    subject.ops = ("check", "bound")
+    subject = Tampered(as_it_is, ("check", "bound"))
     report = conform(subject, Options(level, examples=20))
     assert (report.conforms, report.findings) == (False, [])
     assert report.shortfalls[0].startswith("it offers nothing that shows the level")
 
 
 def test_a_program_that_plans_robots_one_by_one_is_asked_for_the_op_that_shows_completeness() -> None:
-    subject = Tampered(as_it_is)
-    subject.ops = ("query", "plan", "add")
+    subject = Tampered(as_it_is, ("query", "plan", "add"))
     (shortfall,) = conform(subject, Options(Level.COMPLETE, examples=20)).shortfalls
     assert "must name optimum (level complete-in-context: query or plan or add)" in shortfall
 
 
 def test_a_false_certificate_that_passes_the_check_is_refused_by_the_optimum(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(carp_verify.bound.verify, "verify_bound", lambda *_: 10**6)
-    subject = Tampered(as_it_is)
-    subject.ops = ("bound",)
+    subject = Tampered(as_it_is, ("bound",))
     report = conform(subject, Options(Level.SOUND, examples=5, shrink_seconds=1))
     assert {finding.rule for finding in report.findings} == {"program/lower"}
 

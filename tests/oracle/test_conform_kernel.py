@@ -64,8 +64,7 @@ OPS = ("check", "query", "plan", "add", "polish")
 
 def run(tamper: Tamper, level: Level = CONTEXT_OPTIMAL, ops: tuple[str, ...] = OPS) -> Report:
     program()
-    subject = Tampered(tamper)
-    subject.ops = ops
+    subject = Tampered(tamper, ops)
     return conform(subject, Options(level, 25, shrink_seconds=1, kernel=version()))
 
 

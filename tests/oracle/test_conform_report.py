@@ -328,8 +328,7 @@ def test_random_cases_are_shared_out_among_the_ops(
 ) -> None:
     monkeypatch.setattr(run, "smoke_cases", lambda *_: [])
     monkeypatch.setattr(run, "vector_cases", lambda *_: [])
-    subject = Tampered(as_it_is)
-    subject.ops = ops
+    subject = Tampered(as_it_is, ops)
     advanced: list[int] = []
     made = conform(subject, Options(examples=examples, seed=3), lambda: advanced.append(1))
     assert sum(count.asked for count in made.tallies.values()) == len(advanced) == examples
@@ -341,8 +340,7 @@ def test_after_the_first_random_failure_the_smallest_is_looked_for_alone() -> No
     def fails(asked: Case, reply: Reply) -> Reply:
         return no_plan(asked, reply) if asked.stage == "random" else reply
 
-    subject = Tampered(fails)
-    subject.ops = ("query", "plan")
+    subject = Tampered(fails, ("query", "plan"))
     made = conform(subject, Options(Level.COMPLETE, examples=40, seed=1, shrink_seconds=30))
     assert made.smallest is not None
     assert made.random["wrong answer"] == 1
@@ -379,8 +377,7 @@ def test_a_kernel_that_decides_is_asked_about_fixed_and_random_cases(monkeypatch
         (None, "carp_spec", {}),
         ("carproof-kernel 7", "carproof-kernel 7", {"smoke": 4, "vectors": 1, "random": 3}),
     ):
-        subject = Tampered(as_it_is)
-        subject.ops = ("query",)
+        subject = Tampered(as_it_is, ("query",))
         options = Options(examples=3, kernel=kernel)
         conform(subject, options)
         assert (Counter(asked), options.by) == (counts, by)
@@ -388,9 +385,8 @@ def test_a_kernel_that_decides_is_asked_about_fixed_and_random_cases(monkeypatch
 
 @pytest.mark.usefixtures("few")
 def test_what_is_not_claimed_is_not_asked_and_counts_for_nothing() -> None:
-    asked: list[Case] = []
-    subject = Tampered(lambda case, reply: (asked.append(case), reply)[1])  # type: ignore[func-returns-value]
-    subject.ops = ("query",)
+    subject = Tampered(as_it_is, ("query",))
+    asked = subject.cases
     made = conform(subject, Options(examples=5, claims=Claims(frozenset(["vanish"]))))
     assert [each.instance.after_goal for each in asked] == ["park"] * len(asked)
     left_out = [each for each in made.outcomes if each.case.instance.after_goal == "vanish"]
@@ -400,8 +396,7 @@ def test_what_is_not_claimed_is_not_asked_and_counts_for_nothing() -> None:
 
 @pytest.mark.usefixtures("few")
 def test_saved_cases_of_ops_that_are_offered_are_asked_before_all_others() -> None:
-    subject = Tampered(as_it_is)
-    subject.ops = ("query",)
+    subject = Tampered(as_it_is, ("query",))
     saved = [replace(each, stage="saved", robot="new", instance=ALONE) for each in (case(), case(op="plan"), case())]
     made = conform(subject, Options(examples=0), saved=saved)
     assert [each.case.stage for each in made.outcomes] == ["saved", "saved", *["smoke"] * 4, "vectors"]

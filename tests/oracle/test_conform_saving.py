@@ -111,8 +111,7 @@ def test_damaged_findings_are_cleared(tmp_path: Path, name: str, damage: Callabl
 
 
 def test_saved_cases_are_asked_first(tmp_path: Path) -> None:
-    subject = Tampered(no_plan)
-    subject.ops = ("query",)
+    subject = Tampered(no_plan, ("query",))
     options = Options(Level.COMPLETE_IN_CONTEXT, examples=0)
     save_all(conform(subject, options).failures, tmp_path, ORIGIN)
     again = conform(subject, options, saved=read_saved(tmp_path, whole=False).cases)

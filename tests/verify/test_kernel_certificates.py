@@ -1,6 +1,6 @@
 """The proved kernel on certificates: of queries, refutations and bounds."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,12 +11,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from tests.verify.bound_examples import certificates, completed, crossing, cut_certificate
 from tests.verify.kernel_program import Json, ask, check_bound, encoded, run, served
+from tests.verify.query_examples import Question
 from tests.verify.tiny import TINY
 
-from carp_reference.context import context_of
-from carp_reference.problem import Problem, prepare
-from carp_reference.query import _expand, _start, find_plan
-from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, RobotId, Solution, has_ended
+from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, Robot, RobotId, Solution, has_ended
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
 from carp_spec.documents.decoding import write
 from carp_spec.documents.instances import digest, instance_document
@@ -30,34 +28,10 @@ _kernel = pytest.fixture(scope="module", autouse=True)(served)
 # ---- queries ----
 
 
-def query_certificate(problem: Problem, committed: Sequence[Plan], robot: RobotId) -> Json:
-    """A certificate made by the reference's steps: each window that can be entered in time, at its earliest."""
-    instance = problem.instance
-    plan = find_plan(problem, committed, robot)
-    bound = None if plan is None else plan.visits[-1].enter
-    context, potential = context_of(instance, committed), problem.ticks_to_goal[robot][0]
-    _, start = _start(problem, context, robot)
-    entered: dict[tuple[ResourceId, int], int] = {}
-    queue = [] if start is None else [start]
-    while queue:
-        node = min(queue, key=lambda each: each.enter)
-        queue.remove(node)
-        for following in _expand(context, robot, node, instance.graph.successors[node.resource]):
-            key = (following.resource, following.window.start)
-            in_time = following.resource in potential and (
-                bound is None or following.enter + potential[following.resource] < bound
-            )
-            if in_time and entered.get(key, following.enter + 1) > following.enter:
-                entered[key] = following.enter
-                queue.append(following)
-    return {
-        "format": "carproof-query/1",
-        "robot": robot,
-        "now": problem.now,
-        "bound": bound,
-        "labels": [(resource, enter) for (resource, _), enter in entered.items()],
-        "potential": list(potential.items()),
-    }
+def certified(instance: Instance, solution: Solution, robot: RobotId, now: int = 0) -> tuple[Plan | None, Json]:
+    """The reference's plan for a robot beside the plans of the others, and its certificate."""
+    plan, certificate = Question(instance, solution, robot, now).certified()
+    return plan, msgspec.to_builtins(certificate)
 
 
 def verify_query(instance: Instance, solution: Solution, certificate: Json) -> Json:
@@ -67,7 +41,7 @@ def verify_query(instance: Instance, solution: Solution, certificate: Json) -> J
 
 @given(st.data(), fleets_under_way())
 def test_query_certificates_prove_the_least_arrival_and_no_later_one(data: st.DataObject, fleet: FleetUnderWay) -> None:
-    certificate = query_certificate(prepare(fleet.instance, fleet.now), fleet.solution.plans, fleet.robot)
+    _, certificate = certified(fleet.instance, fleet.solution, fleet.robot, fleet.now)
     verdict = verify_query(fleet.instance, fleet.solution, certificate)
     assert (verdict["verdict"], verdict["bound"]) == ("accepted", certificate["bound"])
     if certificate["bound"] is not None:
@@ -86,9 +60,7 @@ def test_query_certificates_of_robots_under_way_prove_the_least_arrival(
     assume(fleet.solution.plans)
     plan = data.draw(st.sampled_from(fleet.solution.plans))
     assume(not has_ended(plan, fleet.now))
-    problem = replace(prepare(fleet.instance, fleet.now), before={plan.robot: plan})
-    others = [each for each in fleet.solution.plans if each != plan]
-    certificate = query_certificate(problem, others, plan.robot)
+    _, certificate = certified(fleet.instance, fleet.solution, plan.robot, fleet.now)
     verdict = verify_query(fleet.instance, fleet.solution, certificate)
     assert (verdict["verdict"], verdict["bound"]) == ("accepted", certificate["bound"])
     later = certificate | {"bound": certificate["bound"] + 1}
@@ -97,13 +69,12 @@ def test_query_certificates_of_robots_under_way_prove_the_least_arrival(
 
 @given(instances())
 def test_an_audit_accepts_plans_made_one_after_the_other_and_no_later_one(instance: Instance) -> None:
-    problem = prepare(instance, 0)
     plans: list[Plan] = []
     certificates = []
     for robot in instance.robot:
-        plan = find_plan(problem, plans, robot)
+        plan, certificate = certified(instance, Solution.of(instance, plans), robot)
         if plan is not None:
-            certificates.append(query_certificate(problem, plans, robot))
+            certificates.append(certificate)
             plans.append(plan)
     solution = Solution.of(instance, plans)
     documents = {"instance": instance_document(instance), "solution": solution_document(solution)}
@@ -117,10 +88,9 @@ def test_an_audit_refuses_plans_that_break_the_law_and_names_the_rule() -> None:
     """Each is optimal by itself: the certificates hold, but the two robots exchange their resources."""
     graph = ResourceGraph((Resource("a", 2), Resource("b", 2)), (("a", "b"),))
     instance = Instance(graph, (Robot("r", "a", "b"), Robot("s", "b", "a")))
-    problem = prepare(instance, 0)
-    plans = [find_plan(problem, (), robot) for robot in instance.robot]
-    certificates = [query_certificate(problem, (), robot) for robot in instance.robot]
-    solution = Solution.of(instance, [plan for plan in plans if plan is not None])
+    alone = [certified(instance, Solution.of(instance, []), robot) for robot in instance.robot]
+    certificates = [certificate for _, certificate in alone]
+    solution = Solution.of(instance, [plan for plan, _ in alone if plan is not None])
     documents = {"instance": instance_document(instance), "solution": solution_document(solution)}
     verdict = ask(encoded(op="audit", certificates=certificates, **documents))
     assert (verdict["verdict"], verdict["rule"]) == ("refused", "joint/exchange")

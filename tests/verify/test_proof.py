@@ -172,6 +172,7 @@ def test_a_file_that_was_changed_has_another_digest(proof: Path, name: str) -> N
         (change_text("reach.model", lambda text: "-" + text), "reach.model: it must be whole numbers"),
         (change_text("reach.model", lambda text: "9" * 5000 + text), "reach.model: it must be whole numbers"),
         (change_text("beat.lrat", lambda _: ""), "beat.lrat: it does not show .* the empty clause"),
+        (change_text("beat.lrat", lambda text: text[: text.rindex("\n", 0, -1) + 1]), "beat.lrat: it does not show"),
         (change_text("beat.lrat", lambda _: "hello\n"), "beat.lrat: .* line 1 must be a clause with its hints"),
         (change_text("beat.lrat", lambda _: "0\n"), "beat.lrat: .* line 1 has no hints"),
         (change_text("beat.lrat", lambda _: UNSOUND_DRAT), "beat.lrat: .* line 1 has no hints"),
@@ -281,14 +282,6 @@ def test_digests_of_other_files_are_refused(proof: Path, names: tuple[str, ...])
     digests = json.loads((proof / "manifest.json").read_text())["sha256"]
     change_manifest(sha256={name: digests.get(name, "") for name in names})(proof)
     with pytest.raises(ProofError, match=r"^manifest\.json: it must have the digests of instance\.json, "):
-        verify_proof(proof)
-
-
-def test_a_truncated_refutation_is_refused(proof: Path) -> None:
-    lines = (proof / "beat.lrat").read_text().splitlines(keepends=True)
-    (proof / "beat.lrat").write_text("".join(lines[: len(lines) // 2]))
-    with_digests(proof)
-    with pytest.raises(ProofError, match=r"beat\.lrat: it does not show"):
         verify_proof(proof)
 
 
