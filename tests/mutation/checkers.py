@@ -37,7 +37,7 @@ BOUNDS = (
 QUERIES = ("verify/test_query_certificate", "verify/test_forgery", "verify/test_vectors", "oracle/test_audit")
 ANSWERS = ("oracle/test_conform_one_answer",)
 REPORT = ("oracle/test_conform_report", *ANSWERS)
-FOOTPRINTS = ("verify/test_footprint_meeting", "oracle/test_footprint_check", "oracle/test_footprints_in_cells")
+FOOTPRINTS = ("oracle/test_footprint_check", "oracle/test_footprints_in_cells")
 OUTCOMES = ("oracle/test_conform_outcome",)
 LEMMAS = ("verify/test_lemmas", "verify/test_formulas")
 TESTS: Mapping[str, Sequence[str]] = {
@@ -75,8 +75,8 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carp_verify.footprint.apart": FOOTPRINTS,
     "carp_verify.footprint.cells": FOOTPRINTS,
     "carp_verify.footprint.floor": FOOTPRINTS,
-    "carp_verify.footprint.meeting": FOOTPRINTS,
-    "carproof.layouts.footprint": (*FOOTPRINTS, "oracle/test_footprints"),
+    "carp_verify.footprint.meeting": ("verify/test_footprint_meeting", *FOOTPRINTS),
+    "carproof.layouts.footprint": ("oracle/test_footprint_check", "oracle/test_footprints"),
     "carproof.layouts.turning": ("oracle/test_footprints", "oracle/test_layouts"),
     "carp_verify.kernel": ("verify/test_asking_the_kernel",),
     "carp_verify.query.verify": QUERIES,

@@ -3,7 +3,10 @@
 import json
 from dataclasses import replace
 from fractions import Fraction
+from itertools import combinations, pairwise
+from math import dist
 from pathlib import Path
+from random import Random
 
 import pytest
 from hypothesis import given
@@ -54,8 +57,137 @@ def test_what_the_importer_keeps_apart_is_what_the_check_wants_apart(
     lanes: list[tuple[Place, Place]], size: Footprint, both: bool, turning: bool
 ) -> None:
     made = plant(lanes, both, footprint=size, turning=Fraction(2) if turning else None)
-    groups = {frozenset((one, two)) for each in made.graph.groups for one in each.resources for two in each.resources}
-    assert all_at_once(made, size) == {each for each in groups if len(each) > 1}
+    assert all_at_once(made, size) == kept_apart(made)
+
+
+def kept_apart(made: Instance) -> Pairs:
+    return {frozenset(pair) for each in made.graph.groups for pair in combinations(each.resources, 2)}
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_so_it_is_of_many_small_roadmaps(seed: int) -> None:
+    """Quicker, as no shape is split by headings; with so small numbers, many touch."""
+    random = Random(seed)  # noqa: S311 - no secret
+    for _ in range(12):
+        most = random.choice((3, 12))
+        spots = [(random.randint(0, most), random.randint(0, most)) for _ in range(12)]
+        lanes = {ends: None for ends in zip(spots[::2], spots[1::2], strict=True) if dist(*ends) >= 2}
+        length, width = random.choices(range(1, 10), k=2)
+        size = Footprint(length, length, round=True) if random.random() < 1 / 3 else Footprint(length, width)
+        made = plant([*lanes], both=random.random() < 1 / 2, footprint=size) if lanes else None
+        assert made is None or all_at_once(made, size) == kept_apart(made), (lanes, size)
+
+
+def floor(places: dict[str, Place], *ways: str) -> Instance:
+    """Resources at these places, and edges along the ways, such as `a ab b`."""
+    resources = tuple(Resource(name, 9, 1, x, y) for name, (x, y) in places.items())
+    edges = tuple(edge for way in ways for edge in pairwise(way.split()))
+    return Instance(ResourceGraph(resources, edges, directed=True), ())
+
+
+def near(size: Footprint, places: dict[str, Place], *ways: str) -> set[str]:
+    """The pairs of resources in which two vehicles overlap, like `a ab`."""
+    return {" ".join(sorted(map(str, each))) for each in all_at_once(floor(places, *ways), size)}
+
+
+def near_to(name: str, size: Footprint, places: dict[str, Place], *ways: str) -> set[str]:
+    """The resources in which a vehicle overlaps with one in the resource of that name."""
+    pairs = [each.split() for each in near(size, places, *ways)]
+    return {one for pair in pairs if name in pair for one in pair if one != name}
+
+
+SMALL = Footprint(400, 300)
+"""A vehicle with a diagonal of 500 mm; where no lane is, it turns in a disc."""
+
+
+@pytest.mark.parametrize(("x", "y"), [(0, 0), (9000, 9000), (-9000, -9000), (9000, -9000)])
+def test_places_without_lanes_are_discs_wherever_they_are(x: int, y: int) -> None:
+    for way in ((500, 0), (-500, 0), (0, 500), (0, -500), (300, -400)):
+        assert near(SMALL, {"a": (x, y), "b": (x + way[0], y + way[1])}) == set()
+        nearer = [each - (each > 0) + (each < 0) for each in way]
+        assert near(SMALL, {"a": (x, y), "b": (x + nearer[0], y + nearer[1])}) == {"a b"}
+
+
+ROW = {name: (x, 7) for name, x in zip("pqozamn", range(-1500, 2000, 500), strict=True)}
+"""Points 1 m apart with lanes between them; each but the ends is at the middle of its neighbours."""
+
+
+@pytest.mark.parametrize("ways", [("p q o z a m n",), ("n m a z o q p",), ("p q o", "o z", "a z", "n m a")])
+def test_lanes_are_known_from_the_ends_of_a_row_on(ways: tuple[str, ...]) -> None:
+    along = {"p q", "o q", "o z", "a z", "a m", "m n", "q z", "m z"}
+    assert near(SMALL, ROW, *ways) == along
+    for point in "oa":  # it does not turn there, so that it reaches as far as on the lanes
+        assert near_to("t", SMALL, ROW | {"t": (ROW[point][0], 7 + 400)}, *ways) == set()
+        assert point in near_to("t", SMALL, ROW | {"t": (ROW[point][0], 7 + 399)}, *ways)
+
+
+RING = {"a": (0, 0), "b": (2000, 0), "c": (2000, 2000), "d": (0, 2000)}
+LANES = {"ab": (1000, 0), "bc": (2000, 1000), "cd": (1000, 2000), "da": (0, 1000)}
+
+
+@pytest.mark.parametrize("ways", ["a ab b bc c cd d da a", "a da d cd c bc b ab a"])
+def test_the_corners_of_a_ring_are_discs(ways: str) -> None:
+    ends = {" ".join(sorted((end, lane))) for lane in LANES for end in lane}
+    assert near(SMALL, RING | LANES, ways) == {*ends, "ab bc", "bc cd", "cd da", "ab da"}
+    for corner, (x, y) in RING.items():
+        beside = (x + (300 if x else -300), y + (400 if y else -400))
+        assert near_to("t", SMALL, RING | LANES | {"t": beside}, ways) == set()
+        nearer = (beside[0], beside[1] + (-1 if y else 1))
+        assert corner in near_to("t", SMALL, RING | LANES | {"t": nearer}, ways)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize(("ways", "turns"), [(("w we e", "i ie e"), False), (("w we e", "i ie e", "e en n"), True)])
+def test_a_point_is_a_disc_where_one_lane_of_several_leaves_the_line(
+    side: int, ways: tuple[str, ...], turns: bool
+) -> None:
+    places = {"w": (-2000, 0), "we": (-1000, 0), "e": (0, 0), "ie": (1000, 0), "i": (2000, 0), "t": (0, -450 * side)}
+    bend = {"en": (500, 1000 * side), "n": (1000, 2000 * side)} if turns else {}
+    assert ("e" in near_to("t", SMALL, places | bend, *ways)) == turns
+
+
+def test_resources_at_one_place_that_edges_join_are_one_point() -> None:
+    places = dict.fromkeys(("b", "b1", "b2"), (2000, 0)) | {"a": (0, 0), "c": (2000, 2000)}
+    found = near(SMALL, places | {"ab": (1000, 0), "bc": (2000, 1000)}, "a ab b1", "b b1", "b2 b1", "b2 bc c")
+    assert found == {"b b1", "b b2", "b1 b2", "a ab", "bc c", "ab bc"} | {
+        f"{lane} {point}" if lane < point else f"{point} {lane}" for lane in ("ab", "bc") for point in ("b", "b1", "b2")
+    }
+
+
+@pytest.mark.parametrize("end", [(3000, 0), (3001, 3), (-3001, -3), (0, 2999)])
+def test_a_lane_is_at_the_middle_of_its_ends_rounded_down(end: Place) -> None:
+    middle = (end[0] // 2, end[1] // 2)
+    assert near(SMALL, {"a": (0, 0), "b": end, "ab": middle}, "a ab b") == {"a ab", "ab b"}
+    for off in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+        with pytest.raises(Refusal, match="footprint/lanes"):
+            near(SMALL, {"a": (0, 0), "b": end, "ab": (middle[0] + off[0], middle[1] + off[1])}, "a ab b")
+
+
+def test_slanted_lanes_are_compared_without_rounding() -> None:
+    lanes = {"a": (1000, 2000), "ab": (2500, 4000), "b": (4000, 6000)}
+    beside = {"c": (1400, 1700), "cd": (2900, 3700), "d": (4400, 5700)}  # 500 apart
+    assert "ab cd" not in near(Footprint(10, 500), lanes | beside, "a ab b", "d cd c")
+    assert "ab cd" in near(Footprint(10, 501), lanes | beside, "a ab b", "d cd c")
+
+
+def test_lanes_that_cross_fill_the_same_box() -> None:
+    places = {"a": (0, 0), "b": (2000, 2000), "c": (0, 2000), "d": (2000, 0), "ab": (1000, 1000), "cd": (1000, 1000)}
+    assert near(SMALL, places, "a ab b", "c cd d") == {"a ab", "ab b", "c cd", "cd d", "ab cd"}
+
+
+def test_meetings_come_in_the_order_of_time_and_the_first_are_kept() -> None:
+    """Who is there for no ticks meets nobody."""
+    instance = floor({"a": (0, 0), "b": (1, 0), "c": (4000, 0), "d": (4001, 0), "e": (8000, 0), "f": (8001, 0)})
+    stays = [("a", 1, 4), ("b", 0, 9), ("c", 5, None), ("d", 0, None), ("e", 0, 9), ("f", 0, 1)]
+    stays += [("a", 6, 6), ("e", 7, 3)]
+    robots = tuple(Robot(f"r{number}", place, place) for number, (place, _, _) in enumerate(stays))
+    plans = [Plan(robot.id, (Visit(*stay),)) for robot, stay in zip(robots, stays, strict=True)]
+    standing = replace(instance, robots=robots)
+    for most, starts in ((None, [0, 1, 5]), (2, [0, 1])):
+        found = check(standing, Solution.of(standing, plans), most, SMALL).violations
+        apart = [each for each in found if each.rule == "footprint/apart"]
+        assert [each.start for each in apart] == starts
+        assert [each.end for each in apart] == [1, 4, None][: len(starts)]
 
 
 def crossing(gap: int = 0) -> Instance:
@@ -133,6 +265,7 @@ def test_a_vehicle_that_has_left_is_out_of_the_way(late: int, ticks: list[tuple[
     [
         ([Resource("a", 1, 1, 0, 0), Resource("b")], [], "footprint/positions", "$.graph.resources[1]"),
         ([Resource("a", 1, 1, 0, 0), Resource("b", 1, 1, 9, 0)], [("a", "b")], "footprint/lanes", "$.graph.edges[0]"),
+        ([Resource("a", 1, 1, 0, 0), Resource("b", 1, 1, 9, 0)], [("b", "a")], "footprint/lanes", "$.graph.edges[0]"),
     ],
 )
 def test_a_floor_that_is_not_known_is_refused(

@@ -2,7 +2,7 @@
 
 import json
 from dataclasses import replace
-from itertools import pairwise
+from itertools import pairwise, product
 from math import hypot
 from pathlib import Path
 from typing import Any
@@ -120,10 +120,28 @@ def test_rectangles_that_sweep_one_place_are_too_near(
         (Footprint(900, 600), ([(2, 0), (3, 0), (4, 0)], [(0, 0), (1, 0), (2, 0)]), set()),
         (Footprint(900, 600), ([(0, 0), (1, 0), (2, 0)], [(1, 1), (3, 1)]), set()),
         (Footprint(1200, 700), ([(0, 0), (1, 0), (1, -1)], [(0, 1), (1, 1), (2, 1)]), {1}),
+        # along diagonals, without a turn; on the chord of a turn that was made before; one beside the other
+        (Footprint(400, 707), ([(0, 0), (1, 1), (2, 2)], [(1, 0), (2, 1), (3, 2)]), set()),
+        (Footprint(100, 100), ([(0, 0), (2, 0), (2, 2)], [(1, 1)]), set()),
+        (Footprint(900, 900, round=True), ([(0, 0)], [(1, 0)]), set()),
     ],
 )
 def test_vehicles_in_cells_of_a_metre(size: Footprint, routes: list[list[Place]], found: set[int]) -> None:
-    assert too_near(size, *routes, cells=1000) == found
+    for across, x, y in product((False, True), (1, -1), (1, -1)):
+        turned = [[(x * a, y * b) for a, b in (each[:: -1 if across else 1] for each in route)] for route in routes]
+        assert too_near(size, *turned, cells=1000) == found
+
+
+def test_cells_without_positions_are_refused() -> None:
+    instance = Instance(ResourceGraph((Resource("a"),), ()), ())
+    with pytest.raises(Refusal, match=r"\$\.graph\.resources\[0\].* \[footprint/positions\]"):
+        check(instance, Solution((), ()), footprint=Footprint(1, 1), cells=1)
+
+
+def test_two_visits_are_told_once_though_several_shapes_of_them_overlap() -> None:
+    instance, solution = floor([(0, 0), (3, 3), (6, 0)], [(3, 0), (0, 3), (3, 6)])
+    found = check(instance, solution, None, Footprint(9, 9), 1).violations
+    assert [each.start for each in found] == [0, 1, 2]
 
 
 def test_a_vehicle_turns_between_the_headings_of_a_cell() -> None:
