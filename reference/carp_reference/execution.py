@@ -73,6 +73,9 @@ def earliest(order: Order, least: Mapping[Node, int]) -> dict[Node, int]:
 def retime(instance: Instance, solution: Solution, trace: Trace) -> Solution:
     """Plan the rest of the way: the visits of the trace are kept, and all others entered after the tick `trace.now`.
 
+    Who changes these plans at the tick `trace.now + 1` or later keeps what the trace tells; at `trace.now` a robot
+    could still leave where it has stayed.
+
     Raises `Refusal` if the trace does not follow the solution, and where no lawful plan has the history.
     """
     require_trace(instance, solution, trace)

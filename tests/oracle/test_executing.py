@@ -149,6 +149,21 @@ def test_a_robot_is_added_to_plans_after_a_delay(late_town: Path, carproof: Run)
     assert check_update(solution_of(late_town, "late").plans, solution_of(late_town, "added").plans, 4) == ()
 
 
+def test_what_a_trace_tells_stays_where_plans_change_from_the_next_tick_on(carproof: Run, elsewhere: Path) -> None:
+    carproof("generate grid --width 4 --height 1 --map 3 --robots 1 --seed 1 -o row.json")
+    carproof("plan row.json -o plans.json")
+    robot, visits = json.loads(Path("plans.json").read_bytes())["plans"][0].values()
+    told = {"robot": robot, "visits": [[visits[0][0], 0, None]]}
+    save(trace={"format": "carproof-trace/1", "now": 2, "plans": [told]})
+    outcome = carproof("execution retime row.json plans.json trace.json -o late.json")
+    assert outcome.stdout.splitlines()[-1].startswith("add, assign, query and polish go on with --now 3: ")
+    left = []
+    for now in (2, 3):
+        assert carproof(f"polish row.json late.json --now {now} --iterations 9 -o better.json").code == 0
+        left.append(solution_of(elsewhere, "better").plans[0].visits[0].leave)
+    assert left == [2, 3]
+
+
 def test_an_audit_names_who_is_late_after_a_delay_and_nobody_before(late_town: Path, carproof: Run) -> None:
     assert carproof("audit town.json plans.json --engine reference").code == 0
     outcome = carproof("audit town.json late.json --engine reference --json")

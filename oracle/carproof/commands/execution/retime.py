@@ -22,7 +22,7 @@ from carproof.engines import engine_named
     short_help="Make plans for the rest, in the same order, after delays.",
     epilog=examples(
         "carproof execution retime town.json plans.json trace.json -o late.json",
-        "carproof query town.json late.json r7 --now 12",
+        "carproof query town.json late.json r7 --now 13",
     ),
 )
 @instance_argument
@@ -33,7 +33,8 @@ from carproof.engines import engine_named
 def command(*, instance: str, solution: str, trace: str, engine: str | None, output: Output) -> Answer:
     """Give the plans of SOLUTION new ticks: the visits of TRACE stay, the others follow in order as early as possible.
 
-    The result is a solution under way at the tick of the trace: `add` and `query` take it with --now.
+    The result is a solution under way. The trace tells where robots are at its tick T, so `add`, `assign`, `query` and
+    `polish` go on with --now T+1: with --now T a robot could still leave at T, where the trace says that it has not.
 
     Exit codes: 0 there are new plans, 2 bad input, or no lawful plan has such a history.
     """
@@ -50,4 +51,5 @@ def command(*, instance: str, solution: str, trace: str, engine: str | None, out
                 print_line(
                     f"robot {plan.robot} arrives {counted(abs(ticks), 'tick')} {'later' if ticks > 0 else 'earlier'}"
                 )
+        print_line(f"add, assign, query and polish go on with --now {done.now + 1}: the trace tells of tick {done.now}")
     return Answer.YES

@@ -86,7 +86,10 @@ def execute(
 
 
 def retime(instance: Instance, solution: Solution, trace: Trace, *, engine: Engine) -> Solution:
-    """Make plans for the rest of the way, in the same order and as early as possible."""
+    """Make plans for the rest of the way, in the same order and as early as possible.
+
+    Where robots are at the tick of the trace is told: other ops keep it with a `now` of at least the next tick.
+    """
     sound = sound_within(instance, solution)
     with inside("$.trace"):
         return engine.retime(instance, sound, trace)
