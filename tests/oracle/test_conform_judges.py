@@ -1,4 +1,4 @@
-"""The demands of each level: programs with one fault, and the rule by which they are refused."""
+"""Whole runs: of right programs, and of programs that are wrong always or at times; what is asked, kept and saved."""
 
 import json
 from collections import Counter

@@ -1,4 +1,4 @@
-"""The reader of the test vectors."""
+"""The page about the test vectors."""
 
 import json
 import re
