@@ -92,6 +92,7 @@ def test_tables_are_judged_against_an_instance(carproof: Run) -> None:
 def test_bad_logs_are_refused_by_name(carproof: Run, log: str, format: str, rule: str) -> None:
     code, _, stderr = on_map(carproof, log, format)
     assert code == 2
+    assert stderr.startswith("Error: --from: " if format == "csv" else "Error: log")
     assert stderr.rstrip().endswith(f"[{rule}]")
     assert len(stderr.splitlines()) == 1
 

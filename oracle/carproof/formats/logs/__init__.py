@@ -51,5 +51,5 @@ def read_log_on_map(data: bytes, grid: GridMap, format: str, file: str = "log") 
 def _cells(data: bytes, format: str, width: int, file: str) -> CellLog:
     if format not in CELL_LOGS:
         message = f"a log on a map must be one of {', '.join(CELL_LOGS)}, not {format}"
-        raise Refusal("option", "$.log", RIGHT_LOG.id, message)
+        raise Refusal("option", "$.from", RIGHT_LOG.id, message)
     return CELL_LOGS[format][0](data.decode(errors="replace"), width, file)
