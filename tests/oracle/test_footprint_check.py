@@ -69,8 +69,8 @@ def test_so_it_is_of_many_small_roadmaps(seed: int) -> None:
     """Quicker, as no shape is split by headings; with so small numbers, many touch."""
     random = Random(seed)  # noqa: S311 - no secret
     for _ in range(12):
-        most = random.choice((3, 12))
-        spots = [(random.randint(0, most), random.randint(0, most)) for _ in range(12)]
+        least, most = random.choice(((0, 3), (0, 12), (-20, -8)))
+        spots = [(random.randint(least, most), random.randint(least, most)) for _ in range(12)]
         lanes = {ends: None for ends in zip(spots[::2], spots[1::2], strict=True) if dist(*ends) >= 2}
         length, width = random.choices(range(1, 10), k=2)
         size = Footprint(length, length, round=True) if random.random() < 1 / 3 else Footprint(length, width)

@@ -1,14 +1,18 @@
 """Footprints and turning: which points and lanes vehicles of a size may not use together, and what a turn takes."""
 
+import json
 from fractions import Fraction
 from math import hypot
+from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.oracle.layout_files import lif
 from tests.oracle.roadmaps import Place, graphml
+from tests.oracle.running import Run
 
-from carproof import Footprint, Instance, Settings, import_layout
+from carproof import Footprint, Instance, Settings, import_layout, read_instance
 from carproof.engines import engine_named
 
 
@@ -59,6 +63,53 @@ def test_a_vehicle_that_turns_sweeps_a_disc_and_one_that_goes_on_does_not() -> N
     assert not meets((5000, 5000), 800)
     assert meets((9000, 0), 599)
     assert not meets((9000, 0), 600)
+
+
+@pytest.mark.parametrize(
+    ("size", "gap", "other", "met"),
+    [
+        ("8x6mm", 8, "a -> b", False),
+        ("8x6mm", 7, "a -> b", True),
+        ("10x6mm", 5, "a -> b", True),
+        ("4mm", 8, "a -> b", False),
+        ("4mm", 7, "a -> b", True),
+        ("8x6mm", 20, "c", False),
+        ("8x6mm", 21, "c", True),
+        ("6x8mm", 21, "c", True),
+    ],
+)
+def test_a_point_without_lanes_is_a_disc(
+    size: str, gap: int, other: str, met: bool, carproof: Run, elsewhere: Path
+) -> None:
+    places = {"a": (0, 0), "b": (0.1, 0), "c": (0.05, 0.03), "beside": (0.05, gap / 1000)}
+    nodes = [{"id": name, "x": x, "y": y} for name, (x, y) in places.items()]
+    graph = {"directed": True, "nodes": nodes, "links": [{"source": "a", "target": "b"}]}
+    (elsewhere / "plant").write_text(json.dumps(graph))
+    assert carproof(f"convert plant -o plant.json --robots 0 --footprint {size}").code == 0
+    found = read_instance((elsewhere / "plant.json").read_bytes()).graph.groups
+    assert any({other, "beside"} == set(each.resources) for each in found) == met
+
+
+def test_a_turn_on_the_spot_sweeps_a_disc() -> None:
+    """Also where it is the first lane of a node; half a diagonal is 500 mm, half a width 300."""
+    document = json.loads(lif("1.0.0"))
+    layout = document["layouts"][0]
+    node, edge = layout["nodes"][1], layout["edges"][0]
+    layout["nodes"] += [{**node, "nodeId": "on"}, {**node, "nodeId": "near", "nodePosition": {"x": 3.999, "y": 0}}]
+    layout["edges"].insert(0, {**edge, "edgeId": "turn", "startNodeId": "b", "endNodeId": "on"})
+    layout["edges"].append({**edge, "edgeId": "away", "startNodeId": "on", "endNodeId": "a"})
+    settings = Settings(robots=0, footprint=Footprint(800, 600))
+    groups = import_layout(json.dumps(document).encode(), settings=settings).instance.graph.groups
+    beside = {each for group in groups if "near" in group.resources for each in group.resources}
+    assert beside == {"near", "turn", "b"}
+
+
+def test_a_footprint_needs_positions(carproof: Run, elsewhere: Path) -> None:
+    (elsewhere / "plant").write_text("roadmap:\n  undirected: true\n  edges: [[a, b]]\n")
+    outcome = carproof("convert plant -o plant.json --footprint 450mm")
+    assert outcome.code == 2
+    assert outcome.stderr.startswith("Error: plant:1: the point 'a' must have a position, for a footprint")
+    assert carproof("convert plant -o plant.json --robots 0").code == 0
 
 
 coordinates = st.integers(0, 20)
