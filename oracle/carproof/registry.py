@@ -2,20 +2,12 @@
 
 from typing import Any
 
+from carp_spec import neighbourhood_rules
 from carp_spec.documents.decoding import has_format, has_shape, is_json
 from carp_spec.execution.execution_rules import EXECUTION_RULES, TRACE_RULES, is_acyclic
 from carp_spec.inputs.options import options_are_right
 from carp_spec.instance_rules import INSTANCE_RULES
 from carp_spec.joint_rules import JOINT_RULES, SOLUTION_RULES
-from carp_spec.neighbourhood_rules import (
-    baseline_is_tried,
-    distance,
-    nearest,
-    neighbourhood_orders,
-    next_trajectory,
-    replaces_best,
-    replanned_from,
-)
 from carp_spec.plan_rules import PLAN_RULES, is_plan_cost, is_total_cost, plan_keeps_history
 from carp_spec.polish_rules import POLISH_RULES
 from carp_spec.query_rules import absence_is_true, expansion_key, plan_is_optimal, plan_is_sound
@@ -39,13 +31,13 @@ RULES: tuple[Rule[..., Any], ...] = (
     plan_is_optimal,
     absence_is_true,
     expansion_key,
-    baseline_is_tried,
-    nearest,
-    distance,
-    replanned_from,
-    neighbourhood_orders,
-    replaces_best,
-    next_trajectory,
+    neighbourhood_rules.baseline_is_tried,
+    neighbourhood_rules.nearest,
+    neighbourhood_rules.distance,
+    neighbourhood_rules.replanned_from,
+    neighbourhood_rules.neighbourhood_orders,
+    neighbourhood_rules.replaces_best,
+    neighbourhood_rules.next_trajectory,
     *POLISH_RULES,
     plan_keeps_history,
     *TRACE_RULES,

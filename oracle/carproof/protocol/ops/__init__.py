@@ -13,32 +13,8 @@ import msgspec
 from carp_spec import Refusal
 from carp_verify.kernel import UndecidedError, is_answer
 from carproof.protocol.lines import RIGHT_FIELDS, SPOKEN_VERSION, VERSION, Request
-from carproof.protocol.ops.executing import (
-    check_grants,
-    check_trace,
-    dependencies,
-    drive,
-    execute,
-    give_way,
-    release,
-    retime,
-    untangle,
-)
-from carproof.protocol.ops.judging import audit, check, verify_bound, verify_query
-from carproof.protocol.ops.keeping import (
-    fleet_add,
-    fleet_advance,
-    fleet_assign,
-    fleet_close,
-    fleet_forget,
-    fleet_open,
-    fleet_polish,
-    fleet_rest,
-    fleet_trace,
-)
+from carproof.protocol.ops import executing, judging, keeping, planning, searching
 from carproof.protocol.ops.op import Op, Session, op_of
-from carproof.protocol.ops.planning import add, assign, plan, plan_within, polish, query
-from carproof.protocol.ops.searching import bound, optimum
 
 
 class StartDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -68,36 +44,36 @@ def stop() -> StopDocument:
 
 _HANDLERS: tuple[Callable[..., object], ...] = (
     start,
-    check,
-    query,
-    plan,
-    plan_within,
-    add,
-    assign,
-    polish,
-    optimum,
-    bound,
-    verify_bound,
-    verify_query,
-    audit,
-    check_trace,
-    dependencies,
-    execute,
-    drive,
-    retime,
-    untangle,
-    give_way,
-    release,
-    check_grants,
-    fleet_open,
-    fleet_add,
-    fleet_assign,
-    fleet_advance,
-    fleet_trace,
-    fleet_polish,
-    fleet_rest,
-    fleet_forget,
-    fleet_close,
+    judging.check,
+    planning.query,
+    planning.plan,
+    planning.plan_within,
+    planning.add,
+    planning.assign,
+    planning.polish,
+    searching.optimum,
+    searching.bound,
+    judging.verify_bound,
+    judging.verify_query,
+    judging.audit,
+    executing.check_trace,
+    executing.dependencies,
+    executing.execute,
+    executing.drive,
+    executing.retime,
+    executing.untangle,
+    executing.give_way,
+    executing.release,
+    executing.check_grants,
+    keeping.fleet_open,
+    keeping.fleet_add,
+    keeping.fleet_assign,
+    keeping.fleet_advance,
+    keeping.fleet_trace,
+    keeping.fleet_polish,
+    keeping.fleet_rest,
+    keeping.fleet_forget,
+    keeping.fleet_close,
     stop,
 )
 OPS: Mapping[str, Op] = {op.name: op for op in map(op_of, _HANDLERS)}
