@@ -183,8 +183,5 @@ PARTS: Mapping[str, Callable[[], str]] = {
     "ops": ops,
     "trusted base": trusted_base,
     "theorems": theorems,
-    **{
-        f"fields of {name}": partial(_fields, name)
-        for name in ("instance", "solution", "verdict", "trace", "grants", "bound", "query")
-    },
+    **{f"fields of {name}": partial(_fields, name) for name in DOCUMENTS},
 }

@@ -17,7 +17,6 @@ BOUND = (
 )
 FOOTPRINT = ("apart", "cells", "floor", "meeting", "rules")
 ENCODER = ("optimum/encoding", "optimum/robot_clauses", "optimum/clauses", "optimum/rules", "routes")
-UNSOLVABLE = ("optimum/proof", "optimum/unsolvable")
 CHECK = "`check`: no rule is broken"
 VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
     CHECK: (("documents/decoding", "documents/fields", "documents/instances", "documents/solutions"), ""),

@@ -280,12 +280,6 @@ def lay_keeping(world: World, robots: Ints, first: int) -> int:
 
 
 @entry
-def find_alone(world: World, robot: int) -> bool:
-    """Plan a robot against what is reserved."""
-    return find(world, robot)
-
-
-@entry
 def total(world: World, robots: Ints) -> int:
     """The cost of these robots' plans."""
     cost = 0

@@ -1,10 +1,10 @@
 """A case: one question to a program. It holds nothing of the answer."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
-from carp_spec import Instance, Neighbourhood, Planner, Resource, ResourceId, Robot, RobotId, Solution
+from carp_spec import Instance, Neighbourhood, Planner, Resource, ResourceGraph, ResourceId, Robot, RobotId, Solution
 from carp_spec.shapes import Number, numbers_of
 from carproof.engines import Engine, engine_named
 from carproof.protocol.ops import OPS
@@ -82,6 +82,20 @@ class Case:
 def is_large(instance: Instance) -> bool:
     """Whether the reference would take long."""
     return len(instance.robots) > MOST_ROBOTS or len(instance.graph.resources) > MOST_RESOURCES
+
+
+def renamed(instance: Instance, name: Callable[[int], ResourceId]) -> Instance:
+    """The instance with the names of numbers as ids: those of the places of resources, of groups and of robots."""
+    graph = instance.graph
+    ids = {id: name(number) for id, number in graph.index.items()}
+    resources = tuple(replace(each, id=ids[each.id]) for each in graph.resources)
+    edges = tuple((ids[source], ids[target]) for source, target in graph.edges)
+    groups = tuple(
+        replace(each, id=name(number), resources=tuple(ids[member] for member in each.resources))
+        for number, each in enumerate(graph.groups)
+    )
+    robots = (replace(each.in_names(ids.__getitem__), id=name(number)) for number, each in enumerate(instance.robots))
+    return replace(instance, graph=ResourceGraph(resources, edges, graph.directed, groups), robots=tuple(robots))
 
 
 def engine_for(instance: Instance) -> Engine:

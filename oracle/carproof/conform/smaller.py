@@ -11,9 +11,9 @@ from functools import partial
 from typing import TypeAlias, TypeVar
 
 from carp_reference.execution import order_of
-from carp_spec import Group, Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, RobotId, Stop, Visit
+from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, RobotId, Stop, Visit
 from carp_spec.requests import sound_solution
-from carproof.conform.cases import EXECUTION, NUMBERS, Case, NumberOf
+from carproof.conform.cases import EXECUTION, NUMBERS, Case, NumberOf, renamed
 from carproof.execution.delays import stuck
 
 Edit: TypeAlias = Callable[[Case], Case | None]
@@ -262,13 +262,6 @@ def _numbered(case: Case) -> Case | None:
         return None
     place: dict[ResourceId, ResourceId] = {**instance.graph.index}
     number: dict[RobotId, RobotId] = {robot: position for position, robot in enumerate(instance.robot)}
-    resources = tuple(replace(each, id=place[each.id]) for each in instance.graph.resources)
-    edges = tuple((place[source], place[target]) for source, target in instance.graph.edges)
-    groups = tuple(
-        Group(number, tuple(place[each] for each in group.resources), group.capacity)
-        for number, group in enumerate(instance.graph.groups)
-    )
-    robots = tuple(replace(each.in_names(place.__getitem__), id=number[each.id]) for each in instance.robots)
     plans = tuple(
         Plan(
             number.get(plan.robot, plan.robot),
@@ -281,9 +274,7 @@ def _numbered(case: Case) -> Case | None:
     )
     return replace(
         case,
-        instance=replace(
-            instance, graph=ResourceGraph(resources, edges, instance.graph.directed, groups), robots=robots
-        ),
+        instance=renamed(instance, lambda position: position),
         solution=replace(solution, plans=plans, order=order, unplanned=unplanned),
         robot=None if case.robot is None else number[case.robot],
         delays=tuple((number[robot], visit, ticks) for robot, visit, ticks in case.delays),

@@ -14,7 +14,7 @@ from carproof.engines import warm
 from carproof.extras import require
 
 if TYPE_CHECKING:
-    from carp_optimum.gap import Gap, PlannerGap
+    from carp_optimum.gap import Gap
 
 COLUMNS = ("planner", "unplanned", "total", "above optimum", "price of an order", "price of the search")
 
@@ -78,24 +78,14 @@ def gap_document(gap: "Gap") -> dict[str, Any]:
 
 def gap_rows(gap: "Gap") -> Iterator[Sequence[object]]:
     """A row for each planner, after those of the optimum and of the best order."""
+    best = gap.best_order
     cost = gap.optimum.cost if gap.optimum.decided else None
     yield ("optimum", *(("-",) * 5 if cost is None else (0, cost, *("-",) * 3)))
-    order_price = _difference(gap.best_order, cost)
-    if gap.best_order is not None:
-        yield ("best order", 0, gap.best_order, order_price, order_price, _difference(gap.best_order, gap.best_order))
-    for each in gap.planners:
-        yield _planner_row(each, cost, gap.best_order)
-
-
-def _planner_row(reached: "PlannerGap", cost: int | None, best_order: int | None) -> Sequence[object]:
-    if reached.unplanned:
-        return (reached.planner.name, reached.unplanned, reached.total, "-", "-", "-")
-    prices = (
-        _difference(reached.total, cost),
-        _difference(best_order, cost),
-        _difference(reached.total, best_order),
-    )
-    return (reached.planner.name, 0, reached.total, *prices)
+    reached = [] if best is None else [("best order", 0, best)]
+    reached += [(each.planner.name, each.unplanned, each.total) for each in gap.planners]
+    for name, unplanned, total in reached:
+        prices = (_difference(total, cost), _difference(best, cost), _difference(total, best))
+        yield (name, unplanned, total, *(("-",) * 3 if unplanned else prices))
 
 
 def _difference(total: int | None, least: int | None) -> str:

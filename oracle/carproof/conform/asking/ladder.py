@@ -24,7 +24,7 @@ from carp_spec import (
 )
 from carp_spec.model import Group
 from carp_spec.permutations import splitmix64
-from carproof.conform.cases import Case
+from carproof.conform.cases import Case, renamed
 from carproof.conform.judging.claims import UNSOLVABLE, Claims
 from carproof.conform.levels import Level
 from carproof.engines import engine_named
@@ -284,22 +284,7 @@ def _groups(graph: ResourceGraph, robots: Sequence[Robot], draw: Draw) -> Iterat
 def _far(instance: Instance, draw: Draw) -> Instance:
     """The instance with ids that need more than 32 bits, or are long texts."""
     is_text = draw.happens(3)
-
-    def far(number: int) -> int | str:
-        return "x" * 200 + str(number) if is_text else (number + 1) * FAR_ID
-
-    graph = instance.graph
-    ids = {id: far(number) for id, number in graph.index.items()}
-    resources = tuple(replace(each, id=ids[each.id]) for each in graph.resources)
-    edges = tuple((ids[source], ids[target]) for source, target in graph.edges)
-    groups = tuple(
-        replace(each, id=far(number), resources=tuple(ids[member] for member in each.resources))
-        for number, each in enumerate(graph.groups)
-    )
-    robots = tuple(
-        replace(each.in_names(ids.__getitem__), id=far(number)) for number, each in enumerate(instance.robots)
-    )
-    return Instance(ResourceGraph(resources, edges, graph.directed, groups), robots, instance.after_goal)
+    return renamed(instance, lambda number: "x" * 200 + str(number) if is_text else (number + 1) * FAR_ID)
 
 
 def _asked(rung: Rung, instance: Instance, solution: Solution, draw: Draw, claims: Claims) -> Case | None:
