@@ -41,6 +41,10 @@ def test_parallel_lanes_may_be_used_together_if_vehicles_only_touch(gap: int, si
     assert apart([((0, 0), (5000, 0)), ((0, gap), (5000, gap))], size) == are_apart
 
 
+def test_lanes_that_cross_near_the_end_of_one_are_found() -> None:
+    assert not apart([((5000, 0), (9000, 0)), ((8900, -2000), (8900, 2000))], Footprint(900, 600))
+
+
 def test_slanted_lanes_are_compared_without_rounding() -> None:
     """Along (3, 4) the distance of parallel lanes is whole: 5 for a shift of (0, 25 / 3) times three fifths."""
     lanes = [((0, 0), (3000, 4000)), ((400, -300), (3400, 3700))]  # 500 apart
