@@ -177,6 +177,12 @@ UNKNOWN = {
         ),
         {"the field slope": [10]},
     ),
+    "graphml with an attribute id": (
+        GRAPHML.replace("<graph e", '<key id="d3" attr.name="id"/>\n<graph e').replace(
+            '<node id="b">', '<node id="b">\n<data key="d3">c</data>'
+        ),
+        {"the field data id": [8]},
+    ),
     "annotated": (
         ANNOTATED,
         {"vertices without an edge to themselves, where robots may not wait; here they may": [4]},
@@ -285,12 +291,21 @@ BROKEN = {
     "lif edge that is a list": (lif("1.0").replace('"edgeId": "ab"', '"edgeId": []'), 43, "in quotes, not a list"),
     "lif end of null": (lif("1.0").replace('"endNodeId": "b"', '"endNodeId": null', 1), 45, "in quotes, not null"),
     "lif station of null": (lif("1.0").replace('"a",\n', "null,\n"), 77, "a text in quotes, not null"),
-    "nav2 node of null": (nav2().replace('"id": "a"', '"id": null'), 7, "a text or a number, not null"),
-    "nav2 edge of null": (nav2().replace('"id": "ab"', '"id": null'), 46, "a text or a number, not null"),
-    "nav2 end of null": (nav2().replace('"endid": "b"', '"endid": null', 1), 48, "a text or a number, not null"),
+    "nav2 node of null": (nav2().replace('"id": "a"', '"id": null'), 7, "or a whole number, not null"),
+    "nav2 edge of null": (nav2().replace('"id": "ab"', '"id": null'), 46, "or a whole number, not null"),
+    "nav2 end of null": (nav2().replace('"endid": "b"', '"endid": null', 1), 48, "or a whole number, not null"),
+    "nav2 node of true": (nav2().replace('"id": "a"', '"id": true'), 7, "or a whole number, not true"),
+    "nav2 edge of false": (nav2().replace('"id": "ab"', '"id": false'), 46, "or a whole number, not false"),
+    "nav2 end of true": (nav2().replace('"startid": "b"', '"startid": true', 1), 60, "or a whole number, not true"),
+    "nav2 node that is a fraction": (nav2().replace('"id": "a"', '"id": 1.0'), 7, "or a whole number, not 1.0"),
+    "nav2 node that is not a number": (nav2().replace('"id": "a"', '"id": NaN'), 7, "a number, not 'NaN'"),
     "nav2 position that is a text": (nav2().replace("3.0", '"3.0"', 1), 25, "a number, not the text '3.0'"),
-    "node of null": (NODE_LINK.replace('"id": "b"', '"id": null'), 1, "a text or a number, not null"),
-    "end of null": (NODE_LINK.replace('"target": "b"', '"target": null', 1), 1, "a text or a number, not null"),
+    "node of null": (NODE_LINK.replace('"id": "b"', '"id": null'), 1, "or a whole number, not null"),
+    "end of null": (NODE_LINK.replace('"target": "b"', '"target": null', 1), 1, "or a whole number, not null"),
+    "node of true": (NODE_LINK.replace('"id": "b"', '"id": true'), 1, "in quotes or a whole number, not true"),
+    "end of false": (NODE_LINK.replace('"source": "b"', '"source": false', 1), 1, "or a whole number, not false"),
+    "node that is a fraction": (NODE_LINK.replace('"id": "b"', '"id": 1e0'), 1, "or a whole number, not 1e0"),
+    "node that is a list": (NODE_LINK.replace('"id": "b"', '"id": [0, 1]'), 1, "or a whole number, not a list"),
     "position of null": (NODE_LINK.replace('"x": 3', '"x": null', 1), 1, "it must be a number, not null"),
     "position in a roadmap that is a text": (NODE_LINK.replace('"x": 3', '"x": "3"', 1), 1, "not the text '3'"),
     "agent of null": (ANNOTATED.replace("name: agent0", "name: ~"), 17, "a text or a number, not null"),
@@ -336,6 +351,14 @@ def test_a_broken_layout_is_refused_with_its_line_and_nothing_is_written(
     assert message in outcome.stderr
     assert outcome.stderr.count("\n") == 1
     assert not (elsewhere / "plant.json").exists()
+
+
+def test_whole_numbers_and_texts_are_names_and_all_attributes_of_graphml_are_texts() -> None:
+    for text in (nav2(), NODE_LINK):
+        graph = imported(text.replace('"a"', "-7").replace('"b"', "0").replace('"c"', '"true"'), robots=0).graph
+        assert {"-7", "0", "true"} <= graph.resource.keys()
+    graph = imported(GRAPHML.replace('"a"', '"true"').replace('"b"', '"1.5"'), robots=0).graph
+    assert {"true", "1.5"} <= graph.resource.keys()
 
 
 def test_convert_finds_out_the_format_writes_the_instance_and_lists_the_rest(carproof: Run, elsewhere: Path) -> None:

@@ -30,6 +30,7 @@ RIGHT_LAYOUT = Code(
     DESIGN,
 )
 _NULL = ("", "~", "null", "Null", "NULL")
+_WHOLE = re.compile(r"0|-?[1-9][0-9]*")
 _NUMBER = re.compile(r"[+-]?(?:\d{1,40}(?:\.\d{0,40})?|\.\d{1,40})(?:[eE][+-]?\d{1,2})?")
 
 Value: TypeAlias = "str | list[Tree] | dict[str, Tree] | None"
@@ -79,10 +80,19 @@ class Tree:
     @property
     def quoted_text(self) -> str:
         """The text, which a number is not."""
-        if isinstance(self.value, str) and self.quoted:
+        return self._quoted_or(False, "a text in quotes")
+
+    @property
+    def name(self) -> str:
+        """The text in quotes, or the whole number, by which JSON names a thing."""
+        whole = isinstance(self.value, str) and _WHOLE.fullmatch(self.value) is not None
+        return self._quoted_or(whole, "a text in quotes or a whole number")
+
+    def _quoted_or(self, allowed: bool, what: str) -> str:
+        if isinstance(self.value, str) and (self.quoted or allowed):
             return self.value
         shown = self.value[:40] if isinstance(self.value, str) else self.shown
-        raise self.refuse(f"it must be a text in quotes, not {shown}")
+        raise self.refuse(f"it must be {what}, not {shown}")
 
     @property
     def number(self) -> Fraction:

@@ -39,7 +39,7 @@ def read(tree: Tree) -> Layout:
         if kind.value == "Point":
             place = each["geometry"]["coordinates"]
             x, y = _pair(place)
-            layout.point(each, properties["id"].text, (METRE * x.number, METRE * y.number))
+            layout.point(each, properties["id"].name, (METRE * x.number, METRE * y.number))
             frame = properties.get("frame")
             layout.note("frames of nodes other than map", frame if frame is not None and frame.value != "map" else None)
         elif kind.value not in LINES:
@@ -63,11 +63,11 @@ def _edge(layout: Layout, edge: Tree) -> None:
     metadata = edge.get("metadata")
     limit = None if metadata is None else metadata.get("abs_speed_limit")
     share = None if metadata is None else metadata.get("speed_limit")
-    ends = edge["startid"].text, edge["endid"].text
+    ends = edge["startid"].name, edge["endid"].name
     if ends[0] == ends[1]:
         layout.note("edges from a node to itself", edge)
         return
-    name = edge["id"].text
+    name = edge["id"].name
     is_new = name not in layout.lanes and name not in layout.points
     layout.note("ids that are given twice; such an edge is named by its ends", None if is_new else edge)
     layout.lane(

@@ -92,10 +92,14 @@ def read_plain(tree: Tree) -> Layout:
     layout = Layout(tree)
     graphml = "<>" in tree.fields
     nodes, edges, directed = _graphml(tree) if graphml else _node_link(tree)
+
+    def name(at: Tree) -> str:
+        return at.text if graphml else at.name
+
     for node in nodes:
         pos = node.get("pos")
         at = _place(pos) if pos is not None else (METRE * node["x"].number, METRE * node["y"].number)
-        layout.point(node, node["id"].text, at)
+        layout.point(node, name(node["id"]), at)
         layout.note_others(node, OF_NODES)
     for edge in edges:
         layout.note_others(edge, OF_EDGES)
@@ -104,7 +108,7 @@ def read_plain(tree: Tree) -> Layout:
         layout.lane(
             edge,
             None,
-            (edge["source"].text, edge["target"].text),
+            (name(edge["source"]), name(edge["target"])),
             speed=fast,
             length=None if length is None else METRE * length.positive,
             back=not directed,
@@ -131,7 +135,8 @@ def _graphml(tree: Tree) -> tuple[list[Tree], list[Tree], bool]:
         for each in elements(thing, "data"):
             if each["key"].text not in names:
                 raise each.refuse(f"the key {each['key'].text!r} must be one of the file")
-            fields[names[each["key"].text].text] = each.get("text") or Tree(each.file, each.line, "")
+            name, value = names[each["key"].text].text, each.get("text")
+            fields[f"data {name}" if name in thing.fields else name] = value or Tree(each.file, each.line, "")
         return Tree(thing.file, thing.line, fields)
 
     kind = graphs[0]["edgedefault"]
