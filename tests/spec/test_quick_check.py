@@ -4,16 +4,20 @@ from dataclasses import replace
 
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 from tests.spec.making import PARKED, PARKING, SOLVED, VANISHING
 from tests.spec.strategies import SIZES, instances_with_plans
 
 import carp_optimized
 import carp_reference
-from carp_spec import Carp, Instance, Plan, Visit, judge, violations_of
+from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Visit, judge, violations_of
+from carp_spec.execution.logs import judge_log
+from carp_spec.execution.traces import Trace
 from carp_spec.quick_check import LATEST, breaks_no_rule, is_large
+from carproof.execution.delays import until
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.mutations import MUTATIONS
-from carproof.testing.strategies import instances
+from carproof.testing.strategies import PlannedInstance, broken_solutions, instances, planned_instances
 from carproof.testing.vectors import vectors
 
 KNOWN = replace(SIZES, groups=0, stops=1, service=0)
@@ -57,12 +61,42 @@ def test_ticks_that_arrays_do_not_hold_are_left_to_the_rules(instance: Instance,
         assert not breaks_no_rule(instance, (replace(plans[0], visits=(*plans[0].visits[:-1], last)), *plans[1:]))
 
 
+@given(planned_instances(), st.integers(0, 20))
+def test_right_logs_pass_while_all_robots_are_there(planned: PlannedInstance, now: int) -> None:
+    plans = [plan for plan in until(Trace(now, planned.solution.plans), now).plans if plan.visits]
+    is_known = plans and not planned.instance.graph.groups
+    all_there = all(plan.visits[-1].leave is None for plan in plans)
+    assert breaks_no_rule(planned.instance, plans, now) == bool(is_known and all_there)
+
+
+@given(broken_solutions(), st.integers(0, 20))
+def test_what_passes_as_a_log_breaks_no_rule(planned: PlannedInstance, now: int) -> None:
+    instance = planned.instance
+    solution = replace(planned.solution, plans=tuple(p for p in planned.solution.plans if p.robot in instance.robot))
+    plans = tuple(plan for plan in until(Trace(now, solution.plans), now).plans if plan.visits)
+    if breaks_no_rule(instance, plans, now):
+        found = {(each.rule, each.robots) for each in judge_log(instance, Trace(now, plans)).violations}
+        absent = {robot for robot in instance.robot if robot not in {plan.robot for plan in plans}}
+        assert all(rule == "solution/covers" or absent & {*robots} for rule, robots in found)
+
+
+def test_robots_that_meet_at_the_tick_of_the_log_do_not_pass() -> None:
+    graph = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),))
+    instance = Instance(graph, (Robot("r", "a", "b"), Robot("s", "b", "a")))
+    plans = Plan("r", (Visit("a", 0, 1), Visit("b", 1, None))), Plan("s", (Visit("b", 0, None),))
+    assert not breaks_no_rule(instance, plans, 1)
+
+
 def test_the_checker_words_the_violation_in_many_plans() -> None:
     instance = grid_instance(Grid(width=150, height=150), Fleet(robots=250))
     solution = carp_optimized.plan(instance, Carp())
     assert is_large(solution.plans)
     assert judge(instance, solution).valid
+    seen = until(Trace(99, solution.plans), 99)
+    assert judge_log(instance, seen).valid
     first = solution.plans[0]
     late = tuple(Visit(each.resource, each.enter + 1, each.leave and each.leave + 1) for each in first.visits)
     wrong = replace(solution, plans=(replace(first, visits=late), *solution.plans[1:]))
     assert "plan/start" in {each.rule for each in judge(instance, wrong).violations}
+    moved = replace(seen, plans=(replace(seen.plans[0], visits=seen.plans[1].visits), *seen.plans[1:]))
+    assert {"plan/start", "joint/capacity"} <= {each.rule for each in judge_log(instance, moved).violations}

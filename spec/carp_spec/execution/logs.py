@@ -10,6 +10,7 @@ from carp_spec.inputs.values import require_instance
 from carp_spec.joint_rules import JOINT_RULES, solution_covers_robots
 from carp_spec.model import Instance, Plan, ResourceId, RobotId, Solution
 from carp_spec.plan_rules import PLAN_RULES, plan_ends_at_goal, plan_serves_stops, total_cost
+from carp_spec.quick_check import breaks_no_rule, is_large
 from carp_spec.refusal import Refusal
 from carp_spec.rule import Violation
 from carp_spec.shapes import require_shape
@@ -59,18 +60,23 @@ def judge_log(instance: Instance, log: Trace, most: int | None = MOST_LISTED) ->
     plans = [plan for plan in log.plans if plan.robot in instance.robot]
     plans += [Plan(robot, ()) for robot in absent]
     there = [plan for plan in plans if plan.visits or instance.robot[plan.robot].release <= log.now]
-    gone = [plan for plan in there if plan.visits and plan.visits[-1].leave is not None]
     violations = [*islice(solution_covers_robots(instance, Solution(log.plans, (), absent)), most)]
-    for of_plan in PLAN_RULES:
-        of = gone if of_plan in (plan_ends_at_goal, plan_serves_stops) else there
-        violations += islice((violation for plan in of for violation in of_plan(instance, plan)), most)
-    seen = [_until(plan, log.now) for plan in there]
-    for together in JOINT_RULES:
-        violations += islice(together(instance, seen), most)
+    if not (is_large(there) and breaks_no_rule(instance, there, log.now)):
+        violations += _violations(instance, there, log.now, most)
     served = tuple(each for plan in there for each in _served(instance, plan))
     last = {each.robot for each in served if each.stop == len(instance.robot[each.robot].stops) - 1}
     done = [plan for plan in there if plan.robot in last]
     return LogVerdict(total_cost(instance, done), len(done), tuple(violations), served)
+
+
+def _violations(instance: Instance, plans: Sequence[Plan], now: int, most: int | None) -> Iterator[Violation]:
+    gone = [plan for plan in plans if plan.visits and plan.visits[-1].leave is not None]
+    for of_plan in PLAN_RULES:
+        of = gone if of_plan in (plan_ends_at_goal, plan_serves_stops) else plans
+        yield from islice((violation for plan in of for violation in of_plan(instance, plan)), most)
+    seen = [_until(plan, now) for plan in plans]
+    for together in JOINT_RULES:
+        yield from islice(together(instance, seen), most)
 
 
 def _require_past(log: Trace) -> None:

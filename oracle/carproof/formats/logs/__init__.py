@@ -41,9 +41,10 @@ def read_log_on_map(data: bytes, grid: GridMap, format: str, file: str = "log") 
     log = _cells(data, format, grid.width, file)
     robots = []
     for number, (walk, served) in enumerate(zip(log.walks, log.stops, strict=True)):
-        there = [cell for cell in walk if grid.is_passable(*cell)][-1:]
-        cells = [cell for cell, _ in groupby(served or there or walk[-1:])]
-        robots.append(Robot(number, cell_id(*walk[0]), stops=tuple(Stop(cell_id(*cell)) for cell in cells)))
+        start, end = walk[0].tolist(), walk[-1].tolist()
+        there = served or [next((cell for cell in walk[::-1].tolist() if grid.is_passable(*cell)), end)]
+        stops = tuple(Stop(cell_id(*cell)) for cell, _ in groupby(there))
+        robots.append(Robot(number, cell_id(*start), stops=stops))
     instance = movingai_instance(grid, robots, "park", file)
     return instance, trace_of(instance, log)
 

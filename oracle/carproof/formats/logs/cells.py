@@ -2,23 +2,31 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
-from carp_spec import Instance, Plan, Refusal, Visit
+from carp_spec import Instance, Plan, Refusal
+from carp_spec.documents.solutions import visits_of
 from carp_spec.execution.traces import Trace
 from carp_spec.rule import DESIGN
 from carproof.formats.walks import Cell
 from carproof.generate.grid import cell_id
 from carproof.input_rules import Code
 
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
 RIGHT_LOG = Code("adapter/log", "A log is as its format has it, and has as many robots as its instance.", DESIGN)
 
 
 @dataclass(frozen=True, slots=True)
 class CellLog:
-    """The cell of each robot at each tick from 0, and the cells that it served, in order."""
+    """The cell of each robot at each tick from 0, and the cells that it served, in order.
 
-    walks: Sequence[Sequence[Cell]]
+    A walk has the shape (ticks, 2): x and y at each tick, below a billion.
+    """
+
+    walks: Sequence["npt.NDArray[np.int32]"]
     stops: Sequence[Sequence[Cell]]
 
 
@@ -37,11 +45,13 @@ def trace_of(instance: Instance, log: CellLog) -> Trace:
         message = f"the log must have a robot for each of {len(instance.robots)}, and has {len(log.walks)}"
         raise wrong("INSTANCE", message)
     resources = {(each.x, each.y): each.id for each in instance.graph.resources}
+    ticks = range(max(map(len, log.walks), default=1))
+    shared = [*ticks]  # one object a tick, however many visits begin at it
     plans = []
     for robot, walk in zip(instance.robot, log.walks, strict=True):
-        enters = [tick for tick, cell in enumerate(walk) if tick == 0 or cell != walk[tick - 1]]
-        leaves: list[int | None] = [*enters[1:], None]
-        cells = [walk[tick] for tick in enters]
-        names = [resources.get(cell, cell_id(*cell)) for cell in cells]
-        plans.append(Plan(robot, tuple(map(Visit, names, enters, leaves))))
-    return Trace(max((len(walk) for walk in log.walks), default=1) - 1, tuple(plans))
+        enters = [0, *((walk[1:] != walk[:-1]).any(axis=1).nonzero()[0] + 1).tolist()]
+        cells = map(tuple, walk[enters].tolist())
+        names = [resources[cell] if cell in resources else cell_id(*cell) for cell in cells]
+        entered = [*map(shared.__getitem__, enters)]
+        plans.append(Plan(robot, visits_of(names, entered, [*entered[1:], None])))
+    return Trace(ticks[-1], tuple(plans))

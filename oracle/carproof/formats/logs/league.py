@@ -7,17 +7,22 @@ Source: Input_Output_Format.md of the Start-Kit of MAPF-Competition, and the arc
 """
 
 from collections.abc import Iterator, Sequence
-from itertools import accumulate
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from carproof.formats.logs.cells import CellLog, wrong
-from carproof.formats.walks import Cell, require_bounded
+from carproof.formats.walks import MOST_CELLS, Cell, require_bounded
 
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+HEADINGS = ("E", "S", "W", "N")
 MOVES = ((1, 0), (0, 1), (-1, 0), (0, -1))
-"""Of the headings E, S, W, N, which turn clockwise in this order; y grows downwards."""
-TURNS = {"R": 1, "C": -1, "W": 0, "T": 0, "F": 0}
+"""Of the headings, which turn clockwise in this order; y grows downwards."""
+ACTIONS = frozenset("FRCWT")
+"""F goes forward, R turns clockwise and C against it; the others wait."""
 
 
 class Output(msgspec.Struct, frozen=True):
@@ -44,15 +49,11 @@ def read(text: str, width: int, file: str) -> CellLog:
     require_bounded(sum(len(path) // 2 + 2 for path in output.actualPaths), file)
     walks = []
     for number, ((row, column, heading), path) in enumerate(zip(output.start, output.actualPaths, strict=True)):
-        actions = path.split(",") if path else []
-        if heading not in "ESWN" or len(heading) != 1 or not set(actions) <= TURNS.keys():
-            message = "a robot must start with heading E, S, W or N, and do F, R, C, W or T at each tick"
+        is_start = heading in HEADINGS and all(0 <= each < MOST_CELLS for each in (row, column))
+        if not (is_start and {*path[::2]} <= ACTIONS and {*path[1::2]} <= {","} and (len(path) % 2 or not path)):
+            message = "a robot must start in a cell with heading E, S, W or N, and do F, R, C, W or T at each tick"
             raise wrong(f"{file}: $.actualPaths[{number}]", message)
-        headings = [*accumulate((TURNS[action] for action in actions), initial="ESWN".index(heading))]
-        steps = (MOVES[at % 4] if action == "F" else (0, 0) for action, at in zip(actions, headings, strict=False))
-        walks.append(
-            [*accumulate(steps, lambda cell, step: (cell[0] + step[0], cell[1] + step[1]), initial=(column, row))]
-        )
+        walks.append(_walk((column, row), HEADINGS.index(heading), path[::2]))
     stops: list[list[Cell]] = [[] for _ in walks]
     try:
         for robot, cell in _served(output.events, {task[0]: task for task in output.tasks}):
@@ -60,6 +61,17 @@ def read(text: str, width: int, file: str) -> CellLog:
     except (LookupError, TypeError, ValueError) as error:
         raise wrong(f"{file}: $.events", "each event must name a robot, a task, and how much of it is done") from error
     return CellLog(walks, stops)
+
+
+def _walk(start: Cell, heading: int, actions: str) -> "npt.NDArray[np.int32]":
+    """The cells at each tick."""
+    import numpy as np  # noqa: PLC0415 - slow to load
+
+    done = np.frombuffer(actions.encode(), np.uint8)
+    turns = (done == ord("R")).astype(np.int32) - (done == ord("C"))
+    headings = (heading + np.cumsum(turns) - turns) % len(MOVES)
+    steps = np.array(MOVES, np.int32)[headings] * (done == ord("F"))[:, np.newaxis]
+    return np.cumsum(np.vstack([np.array([start], np.int32), steps]), axis=0, dtype=np.int32)
 
 
 def _served(events: Sequence[Any], tasks: dict[Any, tuple[Any, ...]]) -> Iterator[tuple[int, Cell]]:

@@ -15,6 +15,8 @@ _LINE = re.compile(rf"(?:{_STATE.pattern})+")
 
 def read(text: str, width: int, file: str) -> CellLog:
     """Read paths."""
+    import numpy as np  # noqa: PLC0415 - slow to load
+
     lines = [line.strip() for line in text.strip().split("\n")]
     if not re.fullmatch(r"\d{1,9}", lines[0]) or int(lines[0]) != len(lines) - 1:
         raise wrong(f"{file}:1", f"the line must be the number of robots, a line for each; there are {len(lines) - 1}")
@@ -28,5 +30,6 @@ def read(text: str, width: int, file: str) -> CellLog:
         for place, (_, tick) in enumerate(states):
             if tick != place:
                 raise wrong(f"{file}:{number}", f"state {place} must be that of tick {place}, and is that of {tick}")
-        walks.append([(cell % width, cell // width) for cell, _ in states])
+        cells = np.array([cell for cell, _ in states], np.int32)
+        walks.append(np.stack([cells % width, cells // width], axis=1))
     return CellLog(walks, [[] for _ in walks])
