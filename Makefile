@@ -150,11 +150,14 @@ conform: install
 planted: compiled
 	nice $(BIN)/python -m tests.oracle.planted
 
-# Every line and branch of the specification and the reference, by their own tests and the vectors; then of the compiled planner, run
-# uncompiled, without the tests that start processes of their own or take long that way.
+# Every line and branch of the specification and the reference, by their own tests, the vectors, and the tests of what commands, ops and
+# public functions refuse; then of the compiled planner, run uncompiled, without the tests that start processes of their own or take long
+# that way.
+SPECIFIED := tests/spec tests/reference $(addprefix tests/verify/test_,vectors.py documents.py query_certificate.py) \
+    $(addprefix tests/oracle/test_,assign.py malformed_values.py ops.py public_face.py refusals.py schema.py)
+
 coverage: install
-	$(BIN)/pytest --cov --cov-fail-under=100 tests/spec tests/reference tests/verify/test_vectors.py tests/verify/test_documents.py \
-	    tests/verify/test_query_certificate.py
+	$(BIN)/pytest -m 'not nightly and not ci' --cov --cov-fail-under=100 $(SPECIFIED)
 	NUMBA_DISABLE_JIT=1 HYPOTHESIS_PROFILE=mutation $(BIN)/pytest -W ignore::RuntimeWarning \
 	    --cov --cov-config=tests/optimized/coverage.toml tests/optimized \
 	    -k "not paper_sized and not every_small and not compiling and not uncompiled and not bounds and not planted"

@@ -35,6 +35,8 @@ from carp_spec.documents.instances import digest, read_instance, write_instance
 from carp_spec.documents.query_certificates import QUERY_FORMAT, QueryCertificateDocument
 from carp_spec.documents.solutions import read_solution, write_solution, write_trace
 from carp_spec.execution.traces import Trace
+from carp_spec.inputs.values import RECENT
+from carp_spec.shapes import of_shape
 from carp_verify.certificate import certify
 from carp_verify.optimum.joint_search import least_total_cost
 from carp_verify.query.verify import verify_query
@@ -117,6 +119,7 @@ SOLUTIONS: Mapping[str, tuple[Callable[[], Solution], tuple[str | int, ...], obj
         (*FIRST, "visits"),
         None,
     ),
+    "plans in no tuple": (lambda: replace(SOLVED, plans=[*SOLVED.plans]), ("plans",), None),  # type: ignore[arg-type]
     "order of 1.5": (lambda: replace(SOLVED, order=("r", 1.5)), ("order", 1), 1.5),  # type: ignore[arg-type]
     "unplanned None": (lambda: replace(SOLVED, unplanned=None), ("unplanned",), None),  # type: ignore[arg-type]
 }
@@ -245,7 +248,7 @@ def test_a_malformed_solution_is_refused_like_its_document(function: str, fault:
 
 
 @pytest.mark.parametrize("engine", [carp_optimized, carp_reference])
-@pytest.mark.parametrize("fault", [fault for fault in SOLUTIONS if "plans" in SOLUTIONS[fault][1]])
+@pytest.mark.parametrize("fault", [fault for fault in SOLUTIONS if SOLUTIONS[fault][1][:2] == FIRST])
 def test_malformed_plans_are_refused_like_their_document(engine: Any, fault: str) -> None:  # noqa: ANN401 - a module
     make, place, value = SOLUTIONS[fault]
     by_document = refused_document(write_solution(SOLVED), place, value, read_solution)
@@ -273,10 +276,12 @@ PAST = Plan("r", OF_R.visits[:2])
         (lambda engine: engine.add(RIGHT, ALONE, "s", -1, SAME), "request/now", "$.now"),
         (lambda engine: engine.add(RIGHT, ALONE, "s", True, SAME), "request/now", "$.now"),
         (lambda engine: engine.add(RIGHT, replace(ALONE, order=()), "s", 0, SAME), "solution/order", "$.plans[0]"),
+        (lambda engine: engine.add(RIGHT, replace(ALONE, unplanned=("s", "t")), "s", 0, SAME), "solution/covers", "$"),
         (lambda engine: engine.add(RIGHT, ALONE, "s", 0, Neighbourhood(m=0)), "planner/options", "$.m"),
         (lambda engine: engine.add(RIGHT, ALONE, "s", 0, Carp()), "planner/options", "$.planner"),
         (lambda engine: engine.query(RIGHT, (), "t"), "request/robot", "$.robot"),
         (lambda engine: engine.query(RIGHT, (), "r", 0.5), "request/now", "$.now"),
+        (lambda engine: engine.query(RIGHT, 5, "r"), "document/shape", "$.plans"),
         (lambda engine: engine.query(RIGHT, (PAST,), "r", 9), "plan/goal", "$.plans[0].visits[1]"),
         (lambda engine: engine.query(RIGHT, (PAST,), "s", 9), "plan/goal", "$.plans[0].visits[1]"),
         (lambda engine: engine.query(RIGHT, (OF_R, OF_R), "s"), "solution/covers", "$.plans[0]"),
@@ -284,6 +289,7 @@ PAST = Plan("r", OF_R.visits[:2])
         (lambda engine: engine.plan(RIGHT, Shuffled(seed=1.0)), "planner/options", "$.seed"),  # type: ignore[arg-type]
         (lambda engine: engine.plan(RIGHT, Neighbourhood(baseline=1)), "planner/options", "$.baseline"),  # type: ignore[arg-type]
         (lambda engine: engine.plan(RIGHT, "carp"), "planner/options", "$.planner"),
+        (lambda engine: engine.retime(RIGHT, SOLVED, Trace(-1, ())), "document/shape", "$.now"),
         (lambda engine: engine.polish(RIGHT, SOLVED, iterations=True), "polish/options", "$.iterations"),
         (lambda engine: engine.polish(RIGHT, SOLVED, seconds=0), "polish/options", "$.seconds"),
     ],
@@ -348,6 +354,34 @@ def test_the_format_of_a_foreign_solution_must_exist() -> None:
 def test_costs_need_a_known_robot_and_a_visit() -> None:
     assert refused(lambda: carproof.plan_cost(RIGHT, replace(OF_R, robot="t")))[1:] == ("solution/covers", "$")
     assert refused(lambda: carproof.total_cost(RIGHT, [OF_R, Plan("s", ())]))[1:] == ("plan/start", "$.plans[1]")
+    assert refused(lambda: carproof.total_cost(RIGHT, [OF_R, None]))[1:] == ("document/shape", "$.plans[1]")  # type: ignore[list-item]
+
+
+class OwnPlan(Plan):
+    """What a program may have that keeps more in a plan."""
+
+
+def test_a_plan_of_a_class_derived_from_plan_is_a_plan() -> None:
+    assert carproof.plan_cost(RIGHT, OwnPlan(OF_R.robot, OF_R.visits)) == carproof.plan_cost(RIGHT, OF_R)
+
+
+def test_violations_are_those_of_plans_of_known_robots() -> None:
+    unknown = (OF_R, replace(OF_S, robot="t"))
+    assert refused(lambda: carp_spec.violations_of(RIGHT, unknown)) == ("request", "solution/covers", "$.plans[1]")
+
+
+def test_what_is_wrong_with_the_instance_is_not_blamed_on_further_stops() -> None:
+    slow = with_graph(resources=(*RIGHT.graph.resources, Resource("d", duration=2**40)))
+    ask = refused(lambda: carproof.assign(slow, SOLVED, "s", [Stop("c")], 2))
+    assert ask == ("limit", "limit/ticks", "$.graph.nodes[3].duration")
+
+
+def test_an_error_in_the_making_of_look_ups_is_no_refusal_if_all_values_are_of_their_types() -> None:
+    def failing(_: Instance) -> None:
+        raise ValueError("something else")
+
+    with pytest.raises(ValueError, match="something else"):
+        of_shape("$")(failing)(RIGHT)
 
 
 def test_a_malformed_trace_is_not_written() -> None:
@@ -360,6 +394,24 @@ def test_an_instance_that_was_found_right_is_not_looked_at_again(monkeypatch: py
     carproof.check(instance, SOLVED)
     monkeypatch.setattr("carp_spec.inputs.values.instance_faults", lambda _: pytest.fail("it was looked at again"))
     assert carproof.check(instance, SOLVED).valid
+
+
+def test_plans_that_broke_no_rule_are_not_judged_again_while_some_of_them_are_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    instance = replace(RIGHT)
+    carproof.check(instance, SOLVED)
+    in_a_list: Any = [*SOLVED.plans]
+    assert refused(lambda: carproof.check(instance, replace(SOLVED, plans=in_a_list)))[1:] == (
+        "document/shape",
+        "$.plans",
+    )
+    monkeypatch.setattr("carp_spec.requests.judge", lambda *_: pytest.fail("they were judged again"))
+    others = [[replace(SOLVED, order=()) for _ in range(RECENT + 2)] for _ in range(2)]
+    for looked_at, plan, robot in zip(others, SOLVED.plans, ("s", "r"), strict=True):
+        for other in looked_at:
+            assert not carproof.check(instance, other).valid
+        assert carproof.query(instance, (plan,), robot) is not None
 
 
 def test_a_graph_that_was_found_right_is_not_looked_at_again_with_other_robots() -> None:

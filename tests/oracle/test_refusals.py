@@ -19,6 +19,7 @@ DOCUMENTS: dict[str, object] = {
     "verdict": EMPTY_VERDICT,
     "nothing": {},
     "extra": {**TWO, "extra": 1},
+    "served": corridor([{"id": "r1", "start": "a", "stops": [{"resource": "c", "service": 1}]}]),
     "astray": corridor([{**EAST, "goal": "q"}]),
     "stays": corridor([EAST], "stay"),
     "fraction": corridor([{**EAST, "release": 1.0}]),
@@ -72,7 +73,7 @@ FILES = (
     ("plan empty.json", "empty.json: $: ", "line 1, column 1", "[document/json]"),
     ("plan comma.json", "comma.json: $: ", "line 2, column 9", "[document/json]"),
     ("plan latin.json", "latin.json: $: ", "line 2, column 3", "[document/json]"),
-    ("plan stays.json", "$.after_goal: ", "'stay'", "park or vanish", "[document/shape]"),
+    ("plan stays.json", "$.after_goal: ", "'stay'", "it must be park or vanish [document/shape]"),
     ("plan verdict.json", f"verdict.json: {NO_FORMAT}, and is carproof-verdict/1 [document/format]"),
     (
         "plan mark.json",
@@ -124,6 +125,13 @@ PLANNING = (
     ("polish town.json plans.json --seed -1", "--seed: the seed must be a whole number between 0 and"),
     ("polish town.json plans.json --bound bound-high.json", "bound-high.json: $."),
     ("execution give-way town.json plans.json r1 --route route.json --engine reference", "[plan/start]"),
+    *(
+        (
+            f"plan served.json --planner fixed-paths --engine {engine}",
+            "$.robots: each robot must have a goal alone here",
+        )
+        for engine in ("optimized", "reference")
+    ),
     ("plan town.json --seconds 0", "[polish/options]"),
     ("plan town.json --seconds 1 --iterations 1", "[polish/options]"),
     ("plan town.json --seconds 1 --planner carp", "[planner/options]"),

@@ -481,6 +481,11 @@ def test_plans_are_refused_that_are_no_json(
     assert refused.value.rule == "document/json"
 
 
+@pytest.mark.parametrize(("read", "data"), [(read_solution, PLANNED), (read_trace, FOLLOWED)])
+def test_an_escaped_letter_is_the_letter(read: Callable[[bytes], object], data: bytes) -> None:
+    assert read(data.replace(b'"r"', b'"\\u0072"')) == read(data)
+
+
 @pytest.mark.parametrize("new", [b"1.0", b"1e3", b"true", b'"1"', b"[]", b"null,null", b"1,"])
 def test_visits_are_refused_that_have_no_shape(new: bytes) -> None:
     with pytest.raises(Refusal):

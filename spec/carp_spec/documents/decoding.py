@@ -7,7 +7,7 @@ the rule.
 import json
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Annotated, Final, TypeAlias, TypeVar
 
 import msgspec
@@ -117,18 +117,11 @@ def with_values(message: str, kind: object, path: str) -> str:
         return message
     from msgspec import inspect  # noqa: PLC0415 - most documents are right
 
-    def values(kind: inspect.Type, names: Sequence[str]) -> Iterator[object]:
+    def values(kind: inspect.Type, names: Sequence[str]) -> Sequence[object]:
         if isinstance(kind, inspect.LiteralType):
-            yield from kind.values
-        elif isinstance(kind, inspect.UnionType):
-            for each in kind.types:
-                yield from values(each, names)
-        elif isinstance(kind, inspect.VarTupleType):
-            yield from values(kind.item_type, names)
-        elif isinstance(kind, inspect.StructType):
-            for field in kind.fields:
-                if names and field.encode_name == names[0]:
-                    yield from values(field.type, names[1:])
+            return kind.values
+        fields = kind.fields if isinstance(kind, inspect.StructType) else ()
+        return [each for field in fields if field.encode_name in names[:1] for each in values(field.type, names[1:])]
 
     allowed = " or ".join(map(str, values(inspect.type_info(kind), re.findall(r"\.(\w+)", path))))
     return f"{message}, it must be {allowed}" if allowed else message

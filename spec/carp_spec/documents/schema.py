@@ -55,12 +55,7 @@ def schema_file(name: str) -> Path:
     return FOLDER / f"{name}.schema.json"
 
 
-def write_schemas() -> None:
-    """Write every schema to its file."""
+if __name__ == "__main__":
     FOLDER.mkdir(exist_ok=True)
     for name in DOCUMENTS:
         schema_file(name).write_text(document_schema(name))
-
-
-if __name__ == "__main__":
-    write_schemas()
