@@ -100,3 +100,12 @@ def test_the_checker_words_the_violation_in_many_plans() -> None:
     assert "plan/start" in {each.rule for each in judge(instance, wrong).violations}
     moved = replace(seen, plans=(replace(seen.plans[0], visits=seen.plans[1].visits), *seen.plans[1:]))
     assert {"plan/start", "joint/capacity"} <= {each.rule for each in judge_log(instance, moved).violations}
+
+
+@given(broken_solutions(), st.integers(0, 20))
+def test_a_log_has_the_same_verdict_by_arrays_and_by_the_rules(planned: PlannedInstance, now: int) -> None:
+    log = until(Trace(now, planned.solution.plans), now)
+    by_rules = judge_log(planned.instance, log)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("carp_spec.quick_check.MANY", 0)
+        assert judge_log(planned.instance, log) == by_rules
