@@ -8,7 +8,8 @@ from carproof.engines import warm
 
 ENDING = 0.05
 """The seconds that it takes to print the answer, and to end."""
-SHORTEST = 1e-3
+HARDLY_ANY = 1e-3
+"""The seconds that a search gets where none are left, as it refuses 0."""
 
 
 def time_left(context: click.Context, seconds: float | None, compiling: float = 0.0) -> float | None:
@@ -16,7 +17,7 @@ def time_left(context: click.Context, seconds: float | None, compiling: float = 
     if seconds is None or not seconds > 0:
         return seconds
     started: float = context.find_root().obj
-    return max(seconds + compiling - (perf_counter() - started) - ENDING, SHORTEST)
+    return max(seconds + compiling - (perf_counter() - started) - ENDING, HARDLY_ANY)
 
 
 def time_of_compiling() -> float:

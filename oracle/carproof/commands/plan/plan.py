@@ -26,8 +26,8 @@ from carproof.command_line.time_left import time_left, time_of_compiling
 from carproof.engines import engine_named, fastest_with, repaired, repairs_by_default
 from carproof.progress import found_so_far, search_progress
 
-SHORTEST = 0.15
-"""The seconds left at least."""
+FOR_FIRST_PLANS = 0.15
+"""The seconds that the search for plans gets at least, however few are left."""
 
 
 @click.command(
@@ -132,7 +132,7 @@ def _plan_within(
             show(rounds, found_so_far(total, 0, unplanned))
 
         left = time_left(context, seconds, compiling)
-        left = None if left is None else max(left, SHORTEST)
+        left = None if left is None else max(left, FOR_FIRST_PLANS)
         found = find_within(problem, lambda each: write(each.document()), iterations, left, seed=seed, advance=advance)
     document = found.document()
     if output.write(write(document)):
