@@ -27,7 +27,7 @@ from tests.verify.plain_search import least_cost_of
 from carp_optimum.bound import lower_bound
 from carp_optimum.sat.solver import Solver
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
-from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument, read_bound
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument, Sight, read_bound
 from carp_spec.documents.decoding import write
 from carp_spec.documents.instances import digest
 from carp_spec.plan_rules import plan_cost
@@ -150,11 +150,18 @@ def test_each_robot_has_a_deadline_or_the_deadlines_are_refused() -> None:
         assert refused.value.rule == "bound/deadline"
 
 
-def test_a_robot_without_a_way_has_no_deadline() -> None:
+@pytest.mark.parametrize(
+    ("seen", "reason"),
+    [
+        ((), "robot lost can be at its goal at None, not at 2"),
+        (((1, ("middle",)), (1, ("middle",))), "a robot of the group has no way to its goal"),
+    ],
+)
+def test_a_robot_without_a_way_has_no_deadline(seen: tuple[Sight, ...], reason: str) -> None:
     crossed = crossing()
     instance = Instance(crossed.graph, (*crossed.robots, Robot("lost", "north", "island")))
-    deadlines = DeadlinesDocument(("r0", "lost"), (2, 2), 1, "1 0 1 0\n")
-    with pytest.raises(Refusal, match="robot lost can be at its goal at None, not at 2"):
+    deadlines = DeadlinesDocument(("r0", "lost"), (2, 2), 1, "1 0 1 0\n", seen)
+    with pytest.raises(Refusal, match=reason):
         verify_bound(instance, msgspec.structs.replace(lower_bound(instance, steps=2), deadlines=(deadlines,)))
 
 
@@ -173,6 +180,12 @@ def sight(tick: object = 1, places: object = ("middle",), other: object = ("midd
     return with_sights(seen=((tick, places), (1, other)))
 
 
+def twice(first: int) -> Tamper:
+    """See r0 at a tick, and again at tick 1."""
+    names = ("r0", "r2", "r0")
+    return with_sights(robots=names, ticks=(0, 0, 0), seen=tuple((tick, ("middle",)) for tick in (first, 1, 1)))
+
+
 @pytest.mark.parametrize(
     ("tamper", "reason"),
     [
@@ -187,6 +200,8 @@ def sight(tick: object = 1, places: object = ("middle",), other: object = ("midd
         (with_sights(ticks=(0, -1)), "robot r2 must have whole ticks of at least 0, not -1 and 1"),
         (sight(places=("moon",)), "the places of robot r0 must be resources"),
         (with_sights(seen=((1, ("middle",)),)), "it must see each of 2 robots"),
+        (twice(first=1), "robot r0 must be seen again later than at 1, not at 1"),
+        (twice(first=2), "robot r0 must be seen again later than at 2, not at 1"),
         (with_sights(refutation=""), "it does not end with the empty clause"),
     ],
 )
