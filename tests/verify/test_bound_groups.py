@@ -200,6 +200,7 @@ def twice(first: int) -> Tamper:
         (with_sights(ticks=(0, -1)), "robot r2 must have whole ticks of at least 0, not -1 and 1"),
         (sight(places=("moon",)), "the places of robot r0 must be resources"),
         (with_sights(seen=((1, ("middle",)),)), "it must see each of 2 robots"),
+        (with_sights(seen=((1, ("middle",)),) * 3), "it must see each of 2 robots"),
         (twice(first=1), "robot r0 must be seen again later than at 1, not at 1"),
         (twice(first=2), "robot r0 must be seen again later than at 2, not at 1"),
         (with_sights(refutation=""), "it does not end with the empty clause"),
