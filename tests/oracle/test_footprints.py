@@ -45,6 +45,12 @@ def test_lanes_that_cross_near_the_end_of_one_are_found() -> None:
     assert not apart([((5000, 0), (9000, 0)), ((8900, -2000), (8900, 2000))], Footprint(900, 600))
 
 
+def test_the_nearest_points_of_two_lanes_may_be_their_starts() -> None:
+    """5 and 3 mm apart, 34 in square, where discs of a radius of 3 mm need 36."""
+    assert not apart([((0, 0), (1, 0)), ((-5, 3), (-6, 3))], Footprint(6, 6, round=True))
+    assert apart([((0, 0), (1, 0)), ((-6, 0), (-7, 0))], Footprint(6, 6, round=True))
+
+
 def test_slanted_lanes_are_compared_without_rounding() -> None:
     """Along (3, 4) the distance of parallel lanes is whole: 5 for a shift of (0, 25 / 3) times three fifths."""
     lanes = [((0, 0), (3000, 4000)), ((400, -300), (3400, 3700))]  # 500 apart
@@ -70,23 +76,27 @@ def test_a_vehicle_that_turns_sweeps_a_disc_and_one_that_goes_on_does_not() -> N
 
 
 @pytest.mark.parametrize(
-    ("size", "gap", "other", "met"),
+    ("size", "beside", "other", "met"),
     [
-        ("8x6mm", 8, "a -> b", False),
-        ("8x6mm", 7, "a -> b", True),
-        ("10x6mm", 5, "a -> b", True),
-        ("4mm", 8, "a -> b", False),
-        ("4mm", 7, "a -> b", True),
-        ("8x6mm", 20, "c", False),
-        ("8x6mm", 21, "c", True),
-        ("6x8mm", 21, "c", True),
+        ("8x6mm", (50, 8), "a -> b", False),
+        ("8x6mm", (50, 7), "a -> b", True),
+        ("10x6mm", (50, 5), "a -> b", True),
+        ("4mm", (50, 8), "a -> b", False),
+        ("4mm", (50, 7), "a -> b", True),
+        ("8x6mm", (50, 20), "c", False),
+        ("8x6mm", (50, 21), "c", True),
+        ("6x8mm", (50, 21), "c", True),
+        ("8x6mm", (58, 38), "c", False),
+        ("8x6mm", (57, 37), "c", True),
+        ("7x4mm", (104, 6), "a -> b", False),  # it touches the corner
+        ("7x4mm", (104, 5), "a -> b", True),
     ],
 )
 def test_a_point_without_lanes_is_a_disc(
-    size: str, gap: int, other: str, met: bool, carproof: Run, elsewhere: Path
+    size: str, beside: Place, other: str, met: bool, carproof: Run, elsewhere: Path
 ) -> None:
-    places = {"a": (0, 0), "b": (0.1, 0), "c": (0.05, 0.03), "beside": (0.05, gap / 1000)}
-    nodes = [{"id": name, "x": x, "y": y} for name, (x, y) in places.items()]
+    places = {"a": (0, 0), "b": (100, 0), "c": (50, 30), "beside": beside}
+    nodes = [{"id": name, "x": x / 1000, "y": y / 1000} for name, (x, y) in places.items()]
     graph = {"directed": True, "nodes": nodes, "links": [{"source": "a", "target": "b"}]}
     (elsewhere / "plant").write_text(json.dumps(graph))
     assert carproof(f"convert plant -o plant.json --robots 0 --footprint {size}").code == 0
