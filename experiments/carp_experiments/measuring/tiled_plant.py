@@ -1,18 +1,24 @@
 """A large plant of openTCS made of equal tiles, and how long `carproof plan` takes for its fleets.
 
 A tile has four crossings of one-way streets, and two bays at each, where vehicles stand. Streets go on from tile to
-tile, in turn one way and the other. `python -m carp_experiments.measuring.tiled_plant` prints the table.
+tile, in turn one way and the other. `python -m carp_experiments.measuring.tiled_plant` prints the table; with names of
+layouts, such as a published plant model, the table of plants whose tiles are these.
 """
 
+import sys
 from collections.abc import Callable, Iterator
 from os import times
+from pathlib import Path
 
 import carp_optimized
+from carp_experiments.measuring.tiling import core_of, tiled
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.anytime import nearest_first, plan_within
 from carp_optimized.improve.holding import plan_holding_starts
 from carp_spec import Carp, Instance, Solution, judge
-from carproof.layouts import Settings, import_layout
+from carproof.layouts import Settings, import_layout, read_layout
+from carproof.layouts.layout import Layout
+from carproof.layouts.making import instance_of
 
 PITCH = 5000
 """Between two crossings, in mm."""
@@ -21,6 +27,8 @@ TILES = 12
 FLEETS = ((100, 12), (300, 12), (1000, 12), (3000, 21))
 """Robots, and tiles in a row: bays for 3,000 take a larger plant."""
 SECONDS = 10
+RESOURCES = 5000
+"""At least, of a plant whose tiles are a layout; robots that its points cannot hold take a larger plant."""
 
 
 def tiled_plant(tiles: int = TILES) -> bytes:
@@ -59,11 +67,19 @@ def tiled_instance(robots: int, tiles: int = TILES) -> Instance:
     return import_layout(tiled_plant(tiles), "tiles.xml", settings=settings).instance
 
 
-def _row(robots: int, tiles: int) -> str:
+def instance_of_tiles(layout: Layout, robots: int, resources: int = RESOURCES) -> Instance:
+    """As few tiles of a layout as have the resources and points where all robots can stand; they vanish at goals."""
+    stands = sum(each.stands for each in core_of(layout))
+    if not stands:
+        raise layout.tree.refuse("the layout must have points where vehicles stand, each reached from each")
+    tiles = max(-(-resources // (len(layout.points) + len(layout.lanes))), -(-robots // stands))
+    return instance_of(tiled(layout, tiles), Settings(robots=robots, after_goal="vanish"))
+
+
+def _row(instance: Instance) -> str:
     """The numbers of a fleet: its plans by CARP alone, where each holds its start, and within ten seconds."""
-    instance = tiled_instance(robots, tiles)
     by_way = nearest_first(PlannedFleet(instance), lambda: True)
-    row: list[object] = [robots, len(instance.graph.resources), len(instance.graph.groups)]
+    row: list[object] = [len(instance.robots), len(instance.graph.resources), len(instance.graph.groups)]
     planners: tuple[Callable[[], Solution], ...] = (
         lambda: carp_optimized.plan(instance, Carp()),
         lambda: plan_holding_starts(instance, by_way, lambda _: True),
@@ -86,6 +102,10 @@ def _processor_seconds() -> float:
 
 
 if __name__ == "__main__":
-    _row(8, 1)  # compiles
-    for count, size in FLEETS:
-        print(_row(count, size), flush=True)  # noqa: T201 - the table
+    _row(tiled_instance(8, 1))  # compiles
+    for count, size in () if sys.argv[1:] else FLEETS:
+        print(_row(tiled_instance(count, size)), flush=True)  # noqa: T201 - the table
+    for file in sys.argv[1:]:
+        read = read_layout(Path(file).read_bytes(), file)[1]
+        for count, _ in FLEETS:
+            print(_row(instance_of_tiles(read, count)), flush=True)  # noqa: T201 - the table

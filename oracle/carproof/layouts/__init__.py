@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from carp_spec import Instance, Refusal
 from carproof.input_rules import Code
 from carproof.layouts import lif, nav2, open_rmf, opentcs, roadmaps
-from carproof.layouts.layout import Note, Reader
+from carproof.layouts.layout import Layout, Note, Reader
 from carproof.layouts.located import RIGHT_LAYOUT, read_tree
 from carproof.layouts.making import instance_of
 from carproof.layouts.settings import RIGHT_SETTINGS, Settings
@@ -43,6 +43,12 @@ def import_layout(
 
     Raises `Refusal` with file and line.
     """
+    name, layout = read_layout(data, file, format)
+    return Imported(instance_of(layout, settings), name, layout.notes)
+
+
+def read_layout(data: bytes, file: str = "layout", format: str | None = None) -> tuple[str, Layout]:
+    """Read a layout; returns the name of its format with it."""
     tree = read_tree(data, file)
     if format is None:
         looks = [name for name, each in READERS.items() if each.looks_like(tree)]
@@ -52,5 +58,4 @@ def import_layout(
     elif format not in READERS:
         message = f"there is no format {format!r}; the formats are {', '.join(READERS)}"
         raise Refusal("option", "$.format", RIGHT_SETTINGS.id, message)
-    layout = READERS[format].read(tree)
-    return Imported(instance_of(layout, settings), format, layout.notes)
+    return format, READERS[format].read(tree)
