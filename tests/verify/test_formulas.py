@@ -106,13 +106,13 @@ def test_a_term_is_derived_from_whatever_python_does_with_whole_numbers() -> Non
         a, b = way.number(integer("a")), way.number(integer("b"))
         low, high = min(a, b), max(a, b)
         steps = sum(low + step < high for step in range(3))
-        return bool(a - b) and 1 - low != b and steps != 2 and (2 + a - b > 3 or a >= 3)
+        return bool(a - b) and 1 - high != b and steps != 2 and (2 + a - b > 3 or a >= 3)
 
     term = derived(odd_steps)
     for a, b in product(range(-2, 5), repeat=2):
         low, high = min(a, b), max(a, b)
         steps = sum(low + step < high for step in range(3))
-        expected = a != b and 1 - low != b and steps != 2 and (2 + a - b > 3 or a >= 3)
+        expected = a != b and 1 - high != b and steps != 2 and (2 + a - b > 3 or a >= 3)
         assert evaluate(term, {"a": a, "b": b}) == expected
 
 
