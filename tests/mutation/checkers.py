@@ -53,7 +53,7 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carp_spec.documents.decoding": ("verify/test_documents",),
     "carp_verify.bound.verify": BOUNDS,
     "carp_verify.bound.least": (*BOUNDS, "verify/test_bound_stops"),
-    "carp_verify.bound.network": BOUNDS,
+    "carp_verify.bound.network": (*BOUNDS, "verify/test_bound_stops"),
     "carp_verify.bound.tariff": BOUNDS,
     "carp_verify.bound.rules": (*BOUNDS, "verify/test_gap", "oracle/test_bound"),
     "carp_verify.bound.cuts": BOUNDS,

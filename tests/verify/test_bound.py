@@ -1,5 +1,6 @@
 """Lower bounds by prices: plans that break no rule pay no more than the prices collect, and cost no less."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import count, product
 from random import Random
@@ -73,6 +74,21 @@ def test_where_many_ways_meet_a_claim_is_judged_alike_with_shortcuts_and_without
         empty = BoundDocument(BOUND_FORMAT, digest(instance), 0, SCALE, HORIZON, prices, (), (), ())
         for robot in instance.robots:
             least_cost_of(Tariff(instance, empty), robot, random.randrange(SCALE + 1), Fees())
+
+
+@pytest.mark.parametrize("durations", [*product((1, 6), repeat=4)])
+def test_a_part_of_a_tick_more_than_the_only_way_takes_is_refused(durations: Sequence[int]) -> None:
+    cells = tuple(Resource(place, duration=duration) for place, duration in enumerate(durations))
+    robots = (Robot("there", 0, 3), Robot("back", 3, 0, pace=2))
+    lane = Instance(ResourceGraph(cells, ((0, 1), (1, 2), (2, 3))), robots, after_goal="vanish")
+    most = sum(durations[:3]), 2 * sum(durations[1:])
+    certificate = BoundDocument(BOUND_FORMAT, digest(lane), sum(most), SCALE, 0, (), (), (), ())
+    claims = tuple((robot.id, SCALE * cost) for robot, cost in zip(robots, most, strict=True))
+    assert verify_bound(lane, msgspec.structs.replace(certificate, robots=claims)) == sum(most)
+    for robot in range(2):
+        forged = tuple((name, claim + (robot == place)) for place, (name, claim) in enumerate(claims))
+        with pytest.raises(Refusal, match="can have no more than"):
+            verify_bound(lane, msgspec.structs.replace(certificate, bound=sum(most) + 1, robots=forged))
 
 
 @settings(max_examples=draws(300))
