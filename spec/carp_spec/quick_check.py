@@ -84,15 +84,17 @@ def _columns(
     """
     import numpy as np  # noqa: PLC0415 - slow to load
 
-    visits = chain.from_iterable(plan.visits for plan in plans)
-    resources = chain.from_iterable(map(attrgetter("resource"), plan.visits) for plan in plans)
+    columns: tuple[list[Longs], list[Longs], list[Longs]] = [], [], []
     try:
-        place = np.fromiter(map(index.get, resources, repeat(unknown)), np.int64)
-        enter = np.fromiter(map(attrgetter("enter"), visits), np.int64)
-        going_on = chain.from_iterable(plan.visits[:-1] for plan in plans)
-        left = np.fromiter(map(attrgetter("leave"), going_on), np.int64)
+        for plan in plans:  # one after the other, as its visits are then in the cache for all three
+            visits, size = plan.visits, len(plan.visits)
+            places = map(index.get, map(attrgetter("resource"), visits), repeat(unknown))
+            columns[0].append(np.fromiter(places, np.int64, size))
+            columns[1].append(np.fromiter(map(attrgetter("enter"), visits), np.int64, size))
+            columns[2].append(np.fromiter(map(attrgetter("leave"), visits[:-1]), np.int64, size - 1))
     except (OverflowError, TypeError):
         return None
+    place, enter, left = map(np.concatenate, columns)
     is_held = all(each.min(initial=0) >= 0 and each.max(initial=0) < LATEST for each in (enter, left))
     return (place, enter, left) if is_held and place.max() < unknown else None
 
@@ -125,8 +127,10 @@ def _moves_do_not_meet(instance: Instance, source: "Longs", target: "Longs", tic
     made, reverse = source * size + target, target * size + source
     if not made.size:
         return True
-    if not moves.size or (moves.take(np.searchsorted(moves, made), mode="clip") != made).any():
+    at = np.searchsorted(moves, made)
+    if not moves.size or (moves.take(at, mode="clip") != made).any():
         return False
-    pair = np.searchsorted(moves, np.minimum(made, reverse))
+    back = np.searchsorted(moves, moves % size * size + moves // size)
+    pair = np.minimum(at, back[at])  # of a move without its reverse, perhaps that of another: it is not sure then
     meeting = np.sort((pair * 2 * LATEST + tick) * 2 + (made > reverse))
     return not (np.diff(meeting) == 1)[meeting[:-1] % 2 == 0].any()

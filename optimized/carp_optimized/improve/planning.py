@@ -17,9 +17,7 @@ there is no time to measure all distances, the nearest robots are planned, with 
 their starts.
 """
 
-import gc
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import starmap
 from math import inf
@@ -38,6 +36,7 @@ from carp_optimized.jit.kinds import Ints, IntTable
 from carp_optimized.jit.references import Native
 from carp_optimized.state.arrays import NO_LIMIT
 from carp_spec import Instance, Plan, Robot, RobotId, Solution, Visit
+from carp_spec.documents.decoding import without_collection
 from carp_spec.documents.solutions import SOLUTION_FORMAT, PlanDocument, SolutionDocument, VisitDocument
 
 Advance = Callable[[int, int, int], None]
@@ -119,13 +118,13 @@ class Found:
 
     def solution(self) -> Solution:
         """The plans."""
-        with _without_collection():
+        with without_collection():
             plans = (Plan(robot, tuple(starmap(Visit, visits))) for robot, visits in self.rows())
             return Solution.of(self.instance, plans)
 
     def document(self) -> SolutionDocument:
         """The document of that solution; to make it takes a third of the time."""
-        with _without_collection():
+        with without_collection():
             plans = {robot: PlanDocument(robot, tuple(visits)) for robot, visits in self.rows()}
             unplanned = tuple(each.id for each in self.instance.robots if each.id not in plans)
             return SolutionDocument(SOLUTION_FORMAT, tuple(plans.values()), tuple(plans), unplanned)
@@ -381,18 +380,6 @@ def _chance(heated: int, robots: int, rounds: int, left: int) -> int:
     enough = ENOUGH * robots
     mean = heated * min(rounds, enough) ** 2 * left**3
     return SURE * mean // (mean + 16 * robots * enough**2 * PARTS**3)
-
-
-@contextmanager
-def _without_collection() -> Iterator[None]:
-    """Collect no garbage: there is none, and to look for it at each thousand visits takes longer than to make them."""
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()
 
 
 def time_of_visit(instance: Instance, finish: Callable[[Found], object], clock: Callable[[], float]) -> float:

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Final, Literal
 
 import msgspec
 
-from carp_spec.documents.decoding import decode, write
+from carp_spec.documents.decoding import decode, without_collection, write
 from carp_spec.documents.fields import all_converted, converted, describes
 from carp_spec.inputs.values import require_instance
 from carp_spec.model import AfterGoal, Instance, Resource, ResourceGraph, ResourceId, Robot, RobotId, Stop
@@ -91,6 +91,7 @@ def robot_document(robot: Robot) -> RobotDocument:
     return converted(robot, RobotDocument, goal=msgspec.UNSET, stops=all_converted(robot.stops, StopDocument))
 
 
+@without_collection()
 def read_instance(data: bytes) -> Instance:
     """Read an instance document; raises `Refusal` on its first fault."""
     document = decode(data, InstanceDocument, INSTANCE_FORMAT)

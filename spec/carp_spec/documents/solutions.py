@@ -9,7 +9,7 @@ from typing import Annotated, Final, Literal, TypeAlias
 
 import msgspec
 
-from carp_spec.documents.decoding import decode, decode_quickly, write
+from carp_spec.documents.decoding import decode, decode_quickly, without_collection, write
 from carp_spec.execution.traces import Trace
 from carp_spec.model import Plan, ResourceId, RobotId, Solution, Visit
 from carp_spec.shapes import require_shape
@@ -60,6 +60,7 @@ _TRACE = _of(TraceDocument, "plans", _PLAN)
 """As in the documents, but for a visit: `msgspec.convert` then makes all values of the model at once."""
 
 
+@without_collection()
 def read_solution(data: bytes) -> Solution:
     """Read a solution document; raises `Refusal` if it is malformed. The checker decides whether it is right."""
     quick = decode_quickly(data, _SOLUTION)
@@ -77,6 +78,7 @@ def _plans(documents: Sequence[PlanDocument]) -> tuple[Plan, ...]:
     return tuple(Plan(each.robot, tuple(Visit(*visit) for visit in each.visits)) for each in documents)
 
 
+@without_collection()
 def read_trace(data: bytes) -> Trace:
     """Read a trace; raises `Refusal` if it is malformed. `trace_violations` decides whether it follows a solution."""
     quick = decode_quickly(data, _TRACE)

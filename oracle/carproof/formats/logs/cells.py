@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from carp_spec import Instance, Plan, Refusal
+from carp_spec.documents.decoding import without_collection
 from carp_spec.documents.solutions import visits_of
 from carp_spec.execution.traces import Trace
 from carp_spec.rule import DESIGN
@@ -39,6 +40,7 @@ def wrong(where: str, message: str) -> Refusal:
     return Refusal("document", where, RIGHT_LOG.id, message)
 
 
+@without_collection()
 def trace_of(instance: Instance, log: CellLog) -> Trace:
     """The trace of a log; its k-th robot is the k-th of the instance."""
     if len(log.walks) != len(instance.robots):
