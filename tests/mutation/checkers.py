@@ -122,9 +122,10 @@ PLANTED: Mapping[str, Sequence[tuple[str, str]]] = {
         (" - network.duration[each] for each", " for each"),
     ),
     "carp_verify.bound.tariff": (
-        ("price * instance.graph.resource[source].capacity", "price"),
+        ("price * graph.resource[source].capacity", "price"),
         ("(self.across.get(resource), enter + 1)", "(None, 0)"),  # only movers pay for exchanges
-        ("max(self.horizon, tick + 1)", "max(self.horizon, tick)"),
+        ("max(self.horizon, tick + 1)\n            for", "max(self.horizon, tick)\n            for"),
+        ("max(self.horizon, tick + 1)\n            if", "max(self.horizon, tick)\n            if"),
     ),
     "carp_verify.bound.cuts": (("0 <= horizon <= cut.least", "0 <= horizon"),),
     "carp_verify.optimum.refutation": (
@@ -143,8 +144,8 @@ PLANTED: Mapping[str, Sequence[tuple[str, str]]] = {
     ),
     "carp_verify.optimum.robot_clauses": (
         (
-            "if target in self._rest and (self._drives_on or target != self.robot.goal)",
-            "if target in self._rest and target != self.robot.goal",
+            "if target in self._rest and (self._drives_on or target != self.routes.there)",
+            "if target in self._rest and target != self.routes.there",
         ),
     ),
 }
