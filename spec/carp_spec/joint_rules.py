@@ -114,28 +114,29 @@ def exchanges_are_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator
         return move[0], index[move[1][0]], index[move[1][1]]
 
     opposite = opposite_moves(graph, movers)
-    for one in sorted(filter(opposite, movers), key=place):
-        for other in sorted((each for each in opposite(one) if place(one) <= place(each)), key=place):
-            robots = tuple(dict.fromkeys(movers[one] + movers[other]))
-            if len(robots) > 1:
-                tick, (source, target) = one
-                to = f"{source} and {target}" if other[1] == (target, source) else f"{one[1]} and {other[1]}"
-                yield robots, source, tick, tick + 1, f"they exchange {to} at tick {tick}"
+    pairs = ((one, other) for one in movers for other in opposite(one) if place(one) <= place(other))
+    for one, other in sorted(pairs, key=lambda pair: [*map(place, pair)]):
+        robots = tuple(dict.fromkeys(movers[one] + movers[other]))
+        if len(robots) > 1:
+            tick, (source, target) = one
+            to = f"{source} and {target}" if other[1] == (target, source) else f"{one[1]} and {other[1]}"
+            yield robots, source, tick, tick + 1, f"they exchange {to} at tick {tick}"
 
 
 def opposite_moves(graph: ResourceGraph, moves: Collection[TimedMove]) -> Callable[[TimedMove], Collection[TimedMove]]:
     """The moves at the same tick that lead from the areas that a move leads to into those that it leads from."""
     if not graph.groups:
         return lambda move: [back] if (back := (move[0], move[1][::-1])) in moves else []
+    areas = {each: graph.areas_of(each) for each in graph.index}
     leading: dict[tuple[int, ...], list[TimedMove]] = defaultdict(list)
     for tick, (source, target) in moves:
-        for areas in product(graph.areas_of(source), graph.areas_of(target)):
-            leading[tick, *areas].append((tick, (source, target)))
+        for way in product(areas[source], areas[target]):
+            leading[tick, *way].append((tick, (source, target)))
 
     def opposite(move: TimedMove) -> Collection[TimedMove]:
         tick, (source, target) = move
-        back = product(graph.areas_of(target), graph.areas_of(source))
-        return dict.fromkeys(each for areas in back for each in leading.get((tick, *areas), ()))
+        back = product(areas[target], areas[source])
+        return dict.fromkeys(each for way in back for each in leading.get((tick, *way), ()))
 
     return opposite
 
