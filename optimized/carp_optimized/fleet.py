@@ -46,7 +46,7 @@ T = TypeVar("T")
 Labels: TypeAlias = list[tuple[int, int]]
 
 WITH_STOPS = Reuse(unchanged=False, prefixes=False, shared=False, bounds=False)
-PART = 512  # robots of a pass
+PART = 64  # robots of a pass between two looks at a clock
 MORE = 64  # robots for which there is room
 MANY = 1 << 16  # visits and expansions of records that are no longer held
 
@@ -392,13 +392,13 @@ class PlannedFleet:
         """Ask the query of a robot without a plan that often; for benchmarks."""
         self._call(lambda: passes.repeat_query(self._native, robot, times))
 
-    def carp(self, order: Sequence[int]) -> None:
-        """Plan the robots in order, as if there were no plans yet."""
+    def carp(self, order: Sequence[int], goes_on: Callable[[], bool] = lambda: True) -> None:
+        """Plan the robots in order, as if there were no plans yet, as long as it goes on."""
         self.clear()
         self._state.records.used[:] = 0
         self._plans.clear()
         robots = np.array(order, np.int32)
-        self._pass(robots, self._records, 0)
+        self._pass(robots, self._records, 0, goes_on)
 
     def shuffled(self, planner: Shuffled, order: Sequence[int], advance: Callable[[], None], now: int = 0) -> None:
         """The best of several passes of CARP; robots that have a plan keep what they did until now."""
@@ -592,13 +592,15 @@ class PlannedFleet:
         self._hold(order, held)
         return False
 
-    def _pass(self, robots: Ints, followed: Ints, now: int) -> Ints:
-        """Plan robots in order, where there are no plans yet, and hold the plans found.
+    def _pass(self, robots: Ints, followed: Ints, now: int, goes_on: Callable[[], bool] = lambda: True) -> Ints:
+        """Plan robots in order as long as it goes on, where there are no plans yet, and hold the plans found.
 
         A part at a time, so that little is done again where there was too little room.
         """
         plans = np.full(robots.size, NONE, np.int32)
         for first in range(0, robots.size, PART):
+            if not goes_on():
+                break
             part, found = robots[first : first + PART], plans[first : first + PART]
 
             def attempt(part: Ints = part, found: Ints = found, first: int = first) -> None:

@@ -194,23 +194,38 @@ def polish(
     """Improve a solution for that many rounds or seconds; `advance` gets rounds, unplanned robots and total.
 
     It ends earlier if no plan can be shorter. Robots keep what they have done by the tick `now`; after tick 0, those
-    without a plan get none. Equal iterations and seed give an equal solution. The time is that of the rounds, looked at
-    between calls of `advance`, at most `ROUNDS` rounds apart.
+    without a plan get none. Equal iterations and seed give an equal solution. The time is looked at between calls of
+    `advance`, at most `ROUNDS` rounds apart.
     Raises `Refusal` for wrong options, for a solution that breaks a rule, and for numbers that are too large.
     """
+    started = perf_counter()
     require_polish_options(iterations, seconds, seed)
     require_tick(now)
     whole = sound_solution(instance, solution)
     last = last_round(iterations, seconds)
+    return polish_while(
+        instance, whole, lambda: seconds is None or perf_counter() - started < seconds, last, seed, now, advance
+    )
+
+
+def polish_while(
+    instance: Instance,
+    whole: Solution,
+    goes_on: Callable[[], bool],
+    last: int | None,
+    seed: int,
+    now: int = 0,
+    advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
+) -> Solution:
+    """The same for sound input, as long as it goes on, up to the last round, if there is one."""
     by_robot = {each.robot: each for each in whole.plans}
     fleet = _fleet(instance)
     fleet.commit([by_robot[each] for each in whole.order])
     polishing = fleet.polishing(seed, now)
     played = fleet.polish(polishing, 0)
-    started = perf_counter()
     most = rounds_between_looks(whole)
-    while played != last and (seconds is None or perf_counter() - started < seconds):
-        rounds = most if last is None else min(ROUNDS, last - played)
+    while played != last and goes_on():
+        rounds = most if last is None else min(most, last - played)
         batch = fleet.polish(polishing, rounds)
         played += batch
         advance(played, *fleet.worth)

@@ -1,6 +1,7 @@
 """Robots that a planner leaves out get plans, in small groups or in another order, and the law judges them."""
 
 from dataclasses import replace
+from itertools import count
 
 import pytest
 from hypothesis import given
@@ -48,6 +49,24 @@ def test_a_robot_that_no_small_group_helps_is_planned_in_another_order() -> None
     repaired = repair(instance, plan(instance))
     assert not repaired.unplanned
     assert judge(instance, repaired).valid
+
+
+@pytest.mark.parametrize("looks", [0, 1, 5, 20, 22, 24, 30])
+def test_a_repair_that_goes_on_no_more_ends_with_plans_that_are_no_worse(looks: int) -> None:
+    instance = grid_instance(Grid(map=0), Fleet(robots=100, seed=45))
+    given = plan(instance, Carp())
+    asked = count()
+    repaired = repair(instance, given, lambda: next(asked) < looks)
+    assert judge(instance, repaired).valid
+    assert len(repaired.unplanned) <= len(given.unplanned)
+
+
+def test_a_repair_without_time_changes_nothing() -> None:
+    instance = grid_instance(Grid(map=0), Fleet(robots=100, seed=45))
+    given = plan(instance, Carp())
+    assert len(plan_failed_first(instance, given).unplanned) < len(given.unplanned)
+    assert plan_failed_first(instance, given, lambda: False) == given
+    assert repair(instance, given, lambda: False) == given
 
 
 def test_robots_that_failed_are_planned_first_and_a_robot_without_path_changes_nothing() -> None:

@@ -43,6 +43,8 @@ ENDING, LEAST_ENDING, MOST_ENDING = 8, 32, 8
 
 At least one of so many parts of the time is left for it, and at most another.
 """
+REPAIR = 2
+"""A repair takes at most one of this many parts of the time."""
 BRIEF = 0.01
 """The seconds of an annealing if what comes before took the time."""
 
@@ -59,9 +61,9 @@ def polish_or_anneal(
 ) -> Solution:
     """Improve a solution by large neighbourhood search; `advance` gets rounds, unplanned robots and total.
 
-    With `seconds`, robots without a plan are planned first, which may take longer, and rounds may raise the total for a
-    while (simulated annealing); the best plans seen are the result. Otherwise `iterations` rounds of `polish/...` are
-    played, 10,000 unless given. They never raise the total, and equal iterations and seed give an equal solution.
+    With `seconds`, robots without a plan are planned first, in at most half of the time, and rounds may raise the total
+    for a while (simulated annealing); the best plans seen are the result. Otherwise `iterations` rounds of `polish/...`
+    are played, 10,000 unless given. They never raise the total, and equal iterations and seed give an equal solution.
     Robots keep what they have done by the tick `now`; after tick 0, those without a plan get none. Raises `Refusal` for
     wrong options, for a solution that breaks a rule, and for numbers that are too large.
     """
@@ -94,7 +96,7 @@ def anneal(
     started = clock()
     if repairs and len(solution.plans) < len(instance.robots):
         with suppress(Refusal):
-            solution = repair(instance, solution)
+            solution = repair(instance, solution, lambda: REPAIR * (clock() - started) < seconds)
     whole = sound_solution(instance, solution)
     by_robot = {each.robot: each for each in whole.plans}
     fleet = PlannedFleet(instance)

@@ -17,6 +17,7 @@ from carp_optimized.improve.annealing import anneal
 from carp_optimized.improve.crowds import crowd_of, near
 from carp_optimized.improve.holding import plan_holding_starts
 from carp_optimized.improve.planning import Found, plan_crowd, time_of_visit
+from carp_optimized.improve.repair import plan_failed_first
 from carp_optimized.improve.settling import settled
 from carp_spec import Instance, Solution, total_cost
 from carp_spec.documents.solutions import visits_document
@@ -27,10 +28,8 @@ SECONDS = 10.0
 """The time, unless one is given."""
 ENOUGH = 4
 """The annealing begins if CARP has left this many times its own time, as it takes up the plans again."""
-AMPLE = 20
-"""A repair of robots that are left out begins if CARP has taken at most one of this many parts of the time."""
 AGAIN = 2
-"""Plans are settled without them if there is time left of this many times CARP's own."""
+"""Plans are settled without it if there is time left of this many times CARP's own."""
 SORTING = 4
 """The shortest ways of all robots are looked up if that takes at most one of this many parts of the time."""
 
@@ -84,10 +83,10 @@ def find_within(
     spent = clock() - started
     left = seconds - visit * sum(len(each.visits) for each in solution.plans)
     if left > (1 + ENOUGH) * spent:
-        repairs = AMPLE * spent < seconds
-        time = left - spent
-        solution = anneal(instance, solution, time, seed=seed, advance=advance, clock=clock, repairs=repairs)
+        solution = anneal(instance, solution, left - spent, seed=seed, advance=advance, clock=clock)
     elif left > AGAIN * spent:
+        if solution.unplanned:
+            solution = plan_failed_first(instance, solution, lambda: 2 * (clock() - started) < left + spent)
         solution = settled(instance, solution, lambda: clock() - started < left)
     return _found(instance, solution)
 

@@ -8,18 +8,19 @@ that a pass leaves out come first in the next. Crowds for which that fails too a
 `carp_optimized.improve.lacam` can. Nothing here is trusted: the law judges the plans.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from heapq import heappop, heappush
-from itertools import count, islice
+from itertools import count, islice, takewhile
 from typing import TypeAlias
 
-from carp_optimized import polish
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.lacam import plans_by_steps
 from carp_optimized.improve.settling import settled
+from carp_optimized.planners import polish_while
 from carp_spec import Instance, Plan, RobotId, Solution, Visit, total_cost
 from carp_spec.joint_rules import JOINT_RULES
+from carp_spec.requests import sound_solution
 from carp_spec.rule import Violation
 
 LARGEST_GROUP = 4
@@ -36,54 +37,55 @@ Avoided: TypeAlias = tuple[RobotId, Plan]
 """A robot, and the plan of another that it has to avoid, or one visit that it must not make."""
 
 
-def repair(instance: Instance, solution: Solution) -> Solution:
+def repair(instance: Instance, solution: Solution, goes_on: Callable[[], bool] = lambda: True) -> Solution:
     """Plan the robots of a solution that have a path but no plan, as far as possible; plans of others may change.
 
     An attempt plays rounds of `polish/...`, and plans robots jointly if few are left out and there are no groups of
     resources. If some robots still are, the next attempt begins with plans in another order, and the last with plans
-    made tick by tick. In the end the plans are settled. Raises `Refusal` for a solution that breaks a rule, and for
-    numbers that are too large.
+    made tick by tick. In the end the plans are settled. It ends soon after it goes on no more. Raises `Refusal` for a
+    solution that breaks a rule, and for numbers that are too large.
     """
+    given = solution = sound_solution(instance, solution)
     fleet = PlannedFleet(instance)
-    without_path = {robot for robot in solution.unplanned if fleet.find(fleet.index(robot), None, 0) is None}
-    given = solution
+    asked = takewhile(lambda _: goes_on(), solution.unplanned)
+    without_path = {robot for robot in asked if fleet.find(fleet.index(robot), None, 0) is None}
     for seed in range(ATTEMPTS):
-        if without_path.issuperset(solution.unplanned):
+        if without_path.issuperset(solution.unplanned) or not goes_on():
             break
         if seed > 0:
-            solution = plan_failed_first(instance, solution)
-        solution = polish(instance, solution, iterations=ROUNDS, seed=seed)
+            solution = plan_failed_first(instance, solution, goes_on)
+        solution = polish_while(instance, solution, goes_on, ROUNDS, seed)
         if len(solution.unplanned) <= FEW + len(without_path) and not instance.graph.groups:
-            solution = repair_jointly(instance, solution)
-    if not without_path.issuperset(solution.unplanned):
+            solution = repair_jointly(instance, solution, goes_on)
+    if not without_path.issuperset(solution.unplanned) and goes_on():
         able = tuple(each for each in instance.robots if each.id not in without_path)
         found = plans_by_steps(replace(instance, robots=able))
         if found is not None:
-            solution = polish(instance, Solution.of(instance, found), iterations=ROUNDS, seed=ATTEMPTS)
-    return solution if solution == given else settled(instance, solution)
+            solution = polish_while(instance, Solution.of(instance, found), goes_on, ROUNDS, ATTEMPTS)
+    return solution if solution == given or not goes_on() else settled(instance, solution, goes_on)
 
 
-def plan_failed_first(instance: Instance, solution: Solution) -> Solution:
+def plan_failed_first(instance: Instance, solution: Solution, goes_on: Callable[[], bool] = lambda: True) -> Solution:
     """The plans of the best of some passes of CARP, each with the robots first that the one before left out.
 
-    The solution itself, if no pass plans more robots.
+    The solution itself, if no pass plans more robots. A pass that is not over when it goes on no more counts too.
     """
     fleet = PlannedFleet(instance)
     order = [fleet.index(robot) for robot in (*solution.unplanned, *solution.order)]
     for _ in range(PASSES):
-        fleet.carp(order)
+        fleet.carp(order, goes_on)
         planned = {*fleet.order}
         if len(planned) > len(solution.plans):
             solution = Solution.of(instance, fleet.plans)
-        if len(planned) == len(order):
+        if len(planned) == len(order) or not goes_on():
             break
         order.sort(key=planned.__contains__)
     return solution
 
 
-def repair_jointly(instance: Instance, solution: Solution) -> Solution:
+def repair_jointly(instance: Instance, solution: Solution, goes_on: Callable[[], bool] = lambda: True) -> Solution:
     """The solution with plans for those of its unplanned robots for which a group that can be planned is found."""
-    states = iter(range(ALL_STATES))
+    states = takewhile(lambda _: goes_on(), range(ALL_STATES))
     for robot in solution.unplanned:
         solution = _planned_with_others(instance, solution, robot, states) or solution
     return solution

@@ -47,9 +47,9 @@ def polish(  # noqa: PLR0913 - how long, how, and when
 ) -> Solution:
     """Improve a solution by large neighbourhood search; `advance` gets rounds, unplanned robots and total.
 
-    With `seconds`, robots without a plan are planned first, which may take longer, and rounds may raise the total for a
-    while (simulated annealing); the best plans seen are the result. Otherwise `iterations` rounds of `polish/...` are
-    played, 10,000 unless given. They never raise the total, and equal iterations and seed give an equal solution.
+    With `seconds`, robots without a plan are planned first, in at most half of the time, and rounds may raise the total
+    for a while (simulated annealing); the best plans seen are the result. Otherwise `iterations` rounds of `polish/...`
+    are played, 10,000 unless given. They never raise the total, and equal iterations and seed give an equal solution.
     Robots keep what they have done by the tick `now`; after tick 0, those without a plan get none. Raises `Refusal` for
     wrong options, for a solution that breaks a rule, and for numbers that are too large.
     """

@@ -35,11 +35,7 @@ COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
 )
 @solution_files
 @click.option("--iterations", type=int, help=f"The number of rounds.  [default: {ITERATIONS}]", show_default=False)
-@click.option(
-    "--seconds",
-    type=float,
-    help="The time of the whole command, in place of rounds; to plan robots that are left out may take longer.",
-)
+@click.option("--seconds", type=float, help="The time of the whole command, in place of rounds.")
 @click.option("--seed", type=int, default=0, help="The seed of all choices.")
 @now_option
 @click.option("--bound", type=InputFile(), help="The certificate of a lower bound, of `carproof bound`.")
