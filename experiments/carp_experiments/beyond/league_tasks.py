@@ -1,0 +1,101 @@
+"""Tasks of the League of Robot Runners 2023, planned one by one as robots become free.
+
+Robots drive on in their heading (F), turn (R, C) or wait (W), an action a tick. Each has one task at a time, a cell to
+be in; who is there gets the next of the list at that tick. A robot is planned when it gets a task, as `carproof.assign`
+does, to the cell in the heading in which it is there first if it is alone.
+
+    python -m carp_experiments.beyond.league_tasks MAP AGENTS TASKS TICKS
+
+The files are those of a round in MAPF-Competition/Benchmark-Archive. Printed are a planner's name, the tasks done by
+the tick, robots that got no plan at first, and processor seconds.
+"""
+
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from heapq import heapify, heappop, heappush
+from pathlib import Path
+from time import process_time
+
+from carp_spec import Instance, Neighbourhood, ResourceGraph, ResourceId, Robot, Stop, judge
+from carproof import Fleet
+from carproof.formats.movingai import GridMap, movingai_instance, read_map
+from carproof.generate.grid import cell_id
+from carproof.generate.headings import HEADINGS, with_headings
+
+PLANNERS = {"CARP": Neighbourhood(m=1), "Proposed_4": Neighbourhood(m=4)}
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """The tasks done, by robot and tick; how often no plan was found at first; and the fleet at the end."""
+
+    tasks: tuple[tuple[int, int], ...]
+    missed: int
+    instance: Instance
+    fleet: Fleet
+
+
+def do_tasks(grid: GridMap, starts: Sequence[int], tasks: Sequence[int], ticks: int, planner: Neighbourhood) -> Done:
+    """Give tasks to robots until the tick; cells are numbered row by row."""
+    names = [cell_id(cell % grid.width, cell // grid.width) for cell in range(grid.width * grid.height)]
+    graph = with_headings(movingai_instance(grid, (), "park")).graph
+    east = [f"{names[cell]} E" for cell in starts]
+    robots = tuple(Robot(number, here, here) for number, here in enumerate(east))
+    fleet = Fleet(Instance(graph, robots, "park"), planner=planner)
+    waiting: Iterator[int] = iter(tasks)
+    task: dict[int, int] = {}
+    free_at = dict.fromkeys(range(len(robots)), 0)
+    here = dict(enumerate(east))
+    queue = [(0, robot) for robot in free_at]
+    heapify(queue)
+    done, missed = [], 0
+    while queue:
+        tick, robot = heappop(queue)
+        if tick > ticks or free_at[robot] != tick:
+            continue  # the robot has another plan by now
+        if robot in task and here[robot].rpartition(" ")[0] == names[task[robot]]:
+            done.append((robot, tick))
+            del task[robot]
+        if robot not in task:
+            task[robot] = next(waiting)
+        goal = first_reached(graph, here[robot], names[task[robot]])
+        change = fleet.assign(robot, [Stop(goal)], tick) if goal != here[robot] else fleet.advance(tick)
+        if change.unplanned or goal == here[robot]:
+            missed += bool(change.unplanned)
+            free_at[robot] = tick + 1
+            heappush(queue, (tick + 1, robot))
+        for plan in change.plans:
+            mover, last = int(plan.robot), plan.visits[-1]
+            here[mover], free_at[mover] = str(last.resource), last.enter
+            heappush(queue, (last.enter, mover))
+    return Done(tuple(done), missed, fleet.instance, fleet)
+
+
+def first_reached(graph: ResourceGraph, source: ResourceId, cell: str) -> str:
+    """The part of the cell that a robot alone reaches first from the source, in the order of headings."""
+    goals = [f"{cell} {name}" for name in HEADINGS.values()]
+    seen, layer = {source}, {source}
+    while layer and layer.isdisjoint(goals):
+        layer = {each for near in layer for each in graph.successors[near]} - seen
+        seen |= layer
+    return next(goal for goal in goals if goal in layer)
+
+
+def _numbers(file: str) -> list[int]:
+    """The numbers of a file but for the first, which says how many there are."""
+    return [*map(int, Path(file).read_text().split())][1:]
+
+
+if __name__ == "__main__":
+    map_file, agents, tasks_file, until = sys.argv[1:]
+    for name, planner in PLANNERS.items():
+        began = process_time()
+        found = do_tasks(
+            read_map(Path(map_file).read_bytes(), map_file), _numbers(agents), _numbers(tasks_file), int(until), planner
+        )
+        seconds = process_time() - began
+        verdict = judge(found.instance, found.fleet.solution)
+        if not verdict.valid:
+            raise AssertionError(verdict.violations[0])
+        print(name, len(found.tasks), found.missed, f"{seconds:.1f}")  # noqa: T201 - the table
