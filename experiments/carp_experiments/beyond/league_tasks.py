@@ -7,13 +7,13 @@ does, to the cell in the heading in which it is there first if it is alone.
     python -m carp_experiments.beyond.league_tasks MAP AGENTS TASKS TICKS
 
 The files are those of a round in MAPF-Competition/Benchmark-Archive. Printed are a planner's name, the tasks done by
-the tick, robots that got no plan at first, and processor seconds.
+the tick, how often no plan was found, and processor seconds.
 """
 
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from heapq import heapify, heappop, heappush
+from heapq import heappop, heappush
 from pathlib import Path
 from time import process_time
 
@@ -21,18 +21,17 @@ from carp_spec import Instance, Neighbourhood, ResourceGraph, ResourceId, Robot,
 from carproof import Fleet
 from carproof.formats.movingai import GridMap, movingai_instance, read_map
 from carproof.generate.grid import cell_id
-from carproof.generate.headings import HEADINGS, with_headings
+from carproof.generate.headings import parts_of, with_headings
 
 PLANNERS = {"CARP": Neighbourhood(m=1), "Proposed_4": Neighbourhood(m=4)}
 
 
 @dataclass(frozen=True, slots=True)
 class Done:
-    """The tasks done, by robot and tick; how often no plan was found at first; and the fleet at the end."""
+    """The tasks done, each with its robot, tick and cell; how often no plan was found; and the fleet at the end."""
 
-    tasks: tuple[tuple[int, int], ...]
+    tasks: tuple[tuple[int, int, int], ...]
     missed: int
-    instance: Instance
     fleet: Fleet
 
 
@@ -40,27 +39,24 @@ def do_tasks(grid: GridMap, starts: Sequence[int], tasks: Sequence[int], ticks: 
     """Give tasks to robots until the tick; cells are numbered row by row."""
     names = [cell_id(cell % grid.width, cell // grid.width) for cell in range(grid.width * grid.height)]
     graph = with_headings(movingai_instance(grid, (), "park")).graph
-    east = [f"{names[cell]} E" for cell in starts]
-    robots = tuple(Robot(number, here, here) for number, here in enumerate(east))
+    here = {number: parts_of(names[cell])[0] for number, cell in enumerate(starts)}
+    robots = tuple(Robot(number, start, start) for number, start in here.items())
     fleet = Fleet(Instance(graph, robots, "park"), planner=planner)
     waiting: Iterator[int] = iter(tasks)
     task: dict[int, int] = {}
-    free_at = dict.fromkeys(range(len(robots)), 0)
-    here = dict(enumerate(east))
-    queue = [(0, robot) for robot in free_at]
-    heapify(queue)
+    free_at = dict.fromkeys(here, 0)
+    queue = [(0, robot) for robot in here]
     done, missed = [], 0
     while queue:
         tick, robot = heappop(queue)
         if tick > ticks or free_at[robot] != tick:
             continue  # the robot has another plan by now
-        if robot in task and here[robot].rpartition(" ")[0] == names[task[robot]]:
-            done.append((robot, tick))
-            del task[robot]
+        if robot in task and here[robot] in parts_of(names[task[robot]]):
+            done.append((robot, tick, task.pop(robot)))
         if robot not in task:
             task[robot] = next(waiting)
-        goal = first_reached(graph, here[robot], names[task[robot]])
-        change = fleet.assign(robot, [Stop(goal)], tick) if goal != here[robot] else fleet.advance(tick)
+        goal = first_reached(graph, here[robot], parts_of(names[task[robot]]))
+        change = fleet.advance(tick) if goal == here[robot] else fleet.assign(robot, [Stop(goal)], tick)
         if change.unplanned or goal == here[robot]:
             missed += bool(change.unplanned)
             free_at[robot] = tick + 1
@@ -69,12 +65,11 @@ def do_tasks(grid: GridMap, starts: Sequence[int], tasks: Sequence[int], ticks: 
             mover, last = int(plan.robot), plan.visits[-1]
             here[mover], free_at[mover] = str(last.resource), last.enter
             heappush(queue, (last.enter, mover))
-    return Done(tuple(done), missed, fleet.instance, fleet)
+    return Done(tuple(done), missed, fleet)
 
 
-def first_reached(graph: ResourceGraph, source: ResourceId, cell: str) -> str:
-    """The part of the cell that a robot alone reaches first from the source, in the order of headings."""
-    goals = [f"{cell} {name}" for name in HEADINGS.values()]
+def first_reached(graph: ResourceGraph, source: ResourceId, goals: Sequence[str]) -> str:
+    """The one of the goals that a robot alone reaches first from the source, the first of them among equals."""
     seen, layer = {source}, {source}
     while layer and layer.isdisjoint(goals):
         layer = {each for near in layer for each in graph.successors[near]} - seen
@@ -95,7 +90,7 @@ if __name__ == "__main__":
             read_map(Path(map_file).read_bytes(), map_file), _numbers(agents), _numbers(tasks_file), int(until), planner
         )
         seconds = process_time() - began
-        verdict = judge(found.instance, found.fleet.solution)
+        verdict = judge(found.fleet.instance, found.fleet.solution)
         if not verdict.valid:
             raise AssertionError(verdict.violations[0])
         print(name, len(found.tasks), found.missed, f"{seconds:.1f}")  # noqa: T201 - the table

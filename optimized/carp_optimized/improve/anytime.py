@@ -3,7 +3,8 @@
 Robots that move a step a tick (classical MAPF) are planned by `carp_optimized.improve.planning`, which looks at the
 clock after each few milliseconds. All others are planned by CARP, the shortest way first, as long as there is time; if
 some get no plan, once more, where each holds its start until it is planned. Then follow a repair and an annealing, if
-there is enough time for these, and the plans are settled. Nothing here is trusted: the law judges the plans.
+there is enough time for these, or else passes with those first that failed. In the end plans are settled. Nothing here
+is trusted: the law judges the plans.
 """
 
 from collections.abc import Callable
@@ -29,7 +30,7 @@ SECONDS = 10.0
 ENOUGH = 4
 """The annealing begins if CARP has left this many times its own time, as it takes up the plans again."""
 AGAIN = 2
-"""Plans are settled without it if there is time left of this many times CARP's own."""
+"""With less, passes and settling follow if CARP has left this many times its own time."""
 SORTING = 4
 """The shortest ways of all robots are looked up if that takes at most one of this many parts of the time."""
 

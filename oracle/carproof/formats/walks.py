@@ -20,7 +20,7 @@ Walk: TypeAlias = Sequence[tuple[Cell, int]]
 """Cells, each with a tick at which the robot is there; the ticks rise, and the robot stays between them."""
 
 MOST_CELLS = 60_000_000
-"""A log of 50 million takes 9 GB while it is judged, and several times that if it breaks a rule."""
+"""A log of 50 million takes 9 GB while it is judged, and more than 18 GB if it breaks a rule."""
 
 
 @rule(

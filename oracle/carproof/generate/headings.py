@@ -7,7 +7,7 @@ counter-clockwise (R, C), and each takes the duration of the cell. To end takes 
 
 from dataclasses import replace
 
-from carp_spec import Instance, Move, Refusal, ResourceGraph
+from carp_spec import Instance, Move, Refusal, ResourceGraph, ResourceId
 from carp_spec.inputs.values import require_instance
 from carp_spec.model import Group
 from carp_spec.rule import DESIGN
@@ -23,6 +23,11 @@ CELLS_SIDE_BY_SIDE = Code(
 )
 
 
+def parts_of(cell: ResourceId) -> tuple[str, ...]:
+    """The resources of a cell that is split, one for each heading, in their order."""
+    return tuple(f"{cell} {name}" for name in HEADINGS.values())
+
+
 def with_headings(instance: Instance) -> Instance:
     """The instance with split cells; robots start with the heading E. Raises `Refusal` where cells cannot be split."""
 
@@ -36,7 +41,7 @@ def with_headings(instance: Instance) -> Instance:
     for index, robot in enumerate(instance.robots):
         if len(robot.stops) > 1 or robot.stops[0].service:
             raise refuse(f"$.robots[{index}].stops", "robots must have goals alone, to be reached in any heading")
-    parts = {each: {way: f"{each} {name}" for way, name in HEADINGS.items()} for each in graph.resource}
+    parts = {each: dict(zip(HEADINGS, parts_of(each), strict=True)) for each in graph.resource}
     moves: list[Move] = []
     for source, target in graph.moves:
         one, two = graph.resource[source], graph.resource[target]
