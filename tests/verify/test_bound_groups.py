@@ -1,5 +1,6 @@
 """Cuts and deadlines of groups of robots, also of robots that are seen at a tick, in lower bounds."""
 
+from collections.abc import Callable
 from itertools import product
 
 import msgspec
@@ -10,10 +11,8 @@ from tests.profiles import draws
 from tests.verify.bound_examples import (
     HORIZON,
     SCALE,
-    UNSOUND_DRAT,
     Tamper,
     certificates,
-    completed,
     crossing,
     cut_certificate,
     deadline_certificate,
@@ -23,6 +22,7 @@ from tests.verify.bound_examples import (
     sight_certificate,
 )
 from tests.verify.plain_search import least_cost_of
+from tests.verify.tampered_bounds import TAMPERED
 
 from carp_optimum.bound import lower_bound
 from carp_optimum.sat.solver import Solver
@@ -106,40 +106,14 @@ def test_deadlines_find_what_prices_alone_miss_and_carry_their_proofs() -> None:
     assert verify_bound(instance, certificate) == 11
 
 
-def with_deadlines(**fields: object) -> Tamper:
-    """Change the only deadlines."""
-
-    def tamper(certificate: BoundDocument) -> BoundDocument:
-        changed = msgspec.structs.replace(certificate.deadlines[0], **fields)
-        return completed(crossing(), msgspec.structs.replace(certificate, deadlines=(changed,)))
-
-    return tamper
-
-
-@pytest.mark.parametrize(
-    ("tamper", "path", "reason"),
-    [
-        (with_deadlines(price=-1), "$.deadlines[0].price", "must be a whole number of at least 0, and is -1"),
-        (with_deadlines(price=1.5), "$.deadlines[0].price", r"and is 1\.5"),
-        (with_deadlines(price=True), "$.deadlines[0].price", "and is True"),
-        (
-            with_deadlines(robots=("r0", "r0")),
-            "$.deadlines[0].robots",
-            "each once, or again where it is seen later",
-        ),
-        (with_deadlines(robots=("r0", "moon")), "$.deadlines[0].robots", "must name robots of the instance"),
-        (with_deadlines(robots=(), ticks=()), "$.deadlines[0].robots", "must name robots"),
-        (with_deadlines(ticks=(2, 3)), "$.deadlines[0]", "its proof does not hold"),
-        (with_deadlines(ticks=(1, 2)), "$.deadlines[0]", "robot r0 can be at its goal at 2, not at 1"),
-        (with_deadlines(ticks=(2.0, 2)), "$.deadlines[0]", r"not at 2\.0"),
-        (with_deadlines(ticks=(True, 2)), "$.deadlines[0]", "not at True"),
-        (with_deadlines(refutation=""), "$.deadlines[0]", "it does not end with the empty clause"),
-    ],
-)
-def test_tampered_deadlines_are_refused(tamper: Tamper, path: str, reason: str) -> None:
+@pytest.mark.parametrize(("honest", "tamper", "path", "reason"), TAMPERED)
+def test_tampered_cuts_deadlines_and_sights_are_refused(
+    honest: Callable[[], BoundDocument], tamper: Tamper, path: str, reason: str
+) -> None:
     with pytest.raises(Refusal, match=reason) as refused:
-        verify_bound(crossing(), tamper(deadline_certificate()))
-    assert (refused.value.path, refused.value.rule) == (path, "bound/deadline")
+        verify_bound(crossing(), tamper(honest()))
+    rule = "bound/cut" if path.startswith("$.cuts") else "bound/deadline"
+    assert (refused.value.path, refused.value.rule) == (path, rule)
 
 
 def test_each_robot_has_a_deadline_or_the_deadlines_are_refused() -> None:
@@ -163,53 +137,6 @@ def test_a_robot_without_a_way_has_no_deadline(seen: tuple[Sight, ...], reason: 
     deadlines = DeadlinesDocument(("r0", "lost"), (2, 2), 1, "1 0 1 0\n", seen)
     with pytest.raises(Refusal, match=reason):
         verify_bound(instance, msgspec.structs.replace(lower_bound(instance, steps=2), deadlines=(deadlines,)))
-
-
-def with_sights(**fields: object) -> Tamper:
-    """Change the only deadlines, of robots that are seen."""
-
-    def tamper(certificate: BoundDocument) -> BoundDocument:
-        changed = msgspec.structs.replace(certificate.deadlines[0], **fields)
-        tampered = msgspec.structs.replace(certificate, deadlines=(changed,))
-        return completed(crossing(), tampered) if len(changed.seen) > 1 else tampered
-
-    return tamper
-
-
-def sight(tick: object = 1, places: object = ("middle",), other: object = ("middle",)) -> Tamper:
-    return with_sights(seen=((tick, places), (1, other)))
-
-
-def twice(first: int) -> Tamper:
-    """See r0 at a tick, and again at tick 1."""
-    names = ("r0", "r2", "r0")
-    return with_sights(robots=names, ticks=(0, 0, 0), seen=tuple((tick, ("middle",)) for tick in (first, 1, 1)))
-
-
-@pytest.mark.parametrize(
-    ("tamper", "reason"),
-    [
-        (sight(tick=2), "its proof does not hold"),  # r0 can wait while r2 passes
-        (sight(tick=0), "its proof does not hold"),
-        (sight(places=("middle", "north")), "its proof does not hold"),
-        (sight(other=("middle", "south")), "its proof does not hold"),
-        (with_sights(robots=("r0", "r1"), refutation="1 0 1 0\n"), "its proof does not hold"),
-        (sight(tick=-1), "robot r0 must have whole ticks of at least 0, not 0 and -1"),
-        (sight(tick=1.0), r"whole ticks of at least 0, not 0 and 1\.0"),
-        (sight(tick=True), "whole ticks of at least 0, not 0 and True"),
-        (with_sights(ticks=(0, -1)), "robot r2 must have whole ticks of at least 0, not -1 and 1"),
-        (sight(places=("moon",)), "the places of robot r0 must be resources"),
-        (with_sights(seen=((1, ("middle",)),)), "it must see each of 2 robots"),
-        (with_sights(seen=((1, ("middle",)),) * 3), "it must see each of 2 robots"),
-        (twice(first=1), "robot r0 must be seen again later than at 1, not at 1"),
-        (twice(first=2), "robot r0 must be seen again later than at 2, not at 1"),
-        (with_sights(refutation=""), "it does not end with the empty clause"),
-    ],
-)
-def test_tampered_sights_are_refused(tamper: Tamper, reason: str) -> None:
-    with pytest.raises(Refusal, match=reason) as refused:
-        verify_bound(crossing(), tamper(sight_certificate()))
-    assert (refused.value.path, refused.value.rule) == ("$.deadlines[0]", "bound/deadline")
 
 
 def test_a_robot_that_vanishes_may_have_passed_its_goal_when_it_is_seen() -> None:
@@ -275,48 +202,6 @@ def test_deadlines_are_counted_once_for_all_robots_but_one() -> None:
     with pytest.raises(Refusal, match="the bound must be 7") as refused:
         verify_bound(crossing(), dearer)
     assert refused.value.rule == "bound/total"
-
-
-def with_cut(**fields: object) -> Tamper:
-    """Change the first cut."""
-
-    def tamper(certificate: BoundDocument) -> BoundDocument:
-        first = msgspec.structs.replace(certificate.cuts[0], **fields)
-        return msgspec.structs.replace(certificate, cuts=(first, *certificate.cuts[1:]))
-
-    return tamper
-
-
-@pytest.mark.parametrize(
-    ("tamper", "path", "reason"),
-    [
-        (with_cut(multiplier=-1), "$.cuts[0].multiplier", "must be a whole number of at least 0, and is -1"),
-        (with_cut(multiplier=1.5), "$.cuts[0].multiplier", r"and is 1\.5"),
-        (with_cut(multiplier=(1 << 16) + 1), "$.cuts[0].multiplier", "must add up to 65536 at most"),
-        (with_cut(robots=("r0", "r0")), "$.cuts[0].robots", "must name robots of the instance once, also 'r0'"),
-        (with_cut(robots=("r0", "moon")), "$.cuts[0].robots", "also 'moon'"),
-        (with_cut(robots=("r1",)), "$.cuts[0]", "it must have a horizon of each of 1 robots"),
-        (with_cut(robots=("r1", "r2")), "$.cuts[0]", "its proof does not hold: line"),
-        (with_cut(robots=(), horizons=(), order=()), "$.cuts[0].robots", "it must name at least one robot"),
-        (with_cut(least=99), "$.cuts[0]", "its proof does not hold: line"),
-        (with_cut(least=7.0), "$.cuts[0]", "must be whole numbers"),
-        (with_cut(least=True), "$.cuts[0]", "must be whole numbers"),
-        (with_cut(horizons=(1,)), "$.cuts[0]", "it must have a horizon of each of 2 robots"),
-        (with_cut(horizons=(-1, 1)), "$.cuts[0]", "a horizon must be between 0 and the least total"),
-        (with_cut(order=(0, 0)), "$.cuts[0]", "and an order of them"),
-        (with_cut(order=(0, 1, 1)), "$.cuts[0]", "and an order of them"),
-        (with_cut(order=(1, 2)), "$.cuts[0]", "and an order of them"),
-        (with_cut(horizons=(1, 1, 1)), "$.cuts[0]", "it must have a horizon of each of 2 robots"),
-        (with_cut(horizons=(8, 1)), "$.cuts[0]", "a horizon must be between 0 and the least total"),
-        (with_cut(refutation=""), "$.cuts[0]", "it does not end with the empty clause"),
-        (with_cut(refutation="hello"), "$.cuts[0]", "line 1 must be a clause with its hints"),
-        (with_cut(refutation=UNSOUND_DRAT), "$.cuts[0]", "line 1 has no hints: refutations without hints"),
-    ],
-)
-def test_a_tampered_cut_is_refused(tamper: Tamper, path: str, reason: str) -> None:
-    with pytest.raises(Refusal, match=reason) as refused:
-        verify_bound(crossing(), tamper(cut_certificate()))
-    assert (refused.value.path, refused.value.rule) == (path, "bound/cut")
 
 
 @pytest.mark.parametrize(("quarters", "number", "bound"), [(0, 1, 6), (1, 1, 7), (2, 1, 8), (4, 1, 9), (2, 2, 9)])

@@ -9,9 +9,8 @@ from typing import Any
 
 import msgspec
 import pytest
-from tests.verify.bound_examples import Tamper, completed, crossing, sight_certificate
+from tests.verify.bound_examples import completed, crossing, sight_certificate
 from tests.verify.kernel_program import program
-from tests.verify.test_bound_groups import sight, with_sights
 from tests.verify.tiny import case
 
 from carp_optimum.bound import lower_bound
@@ -131,27 +130,6 @@ def test_the_kernel_refuses_claims_that_are_a_part_of_a_tick_too_high() -> None:
             robots[position] = (name, (least or 0) + 1)
             forged.append((instance, msgspec.structs.replace(certificate, robots=tuple(robots))))
     assert {answer.get("rule") for answer in verdicts(forged)} == {"bound/robots"}
-
-
-@pytest.mark.parametrize(
-    "tamper",
-    [
-        sight(tick=2),
-        sight(tick=0),
-        sight(places=("middle", "north")),
-        sight(other=("middle", "south")),
-        sight(tick=-1),
-        sight(places=("moon",)),
-        with_sights(ticks=(0, -1)),
-        with_sights(refutation=""),
-    ],
-)
-def test_the_kernel_refuses_tampered_sights(tamper: Tamper) -> None:
-    honest = sight_certificate()
-    questions = [(crossing(), certificate) for certificate in (honest, tamper(honest))]
-    accepted, refused = verdicts(questions)
-    assert (accepted["verdict"], accepted["bound"]) == ("accepted", honest.bound)
-    assert (refused["verdict"], refused["rule"]) == ("refused", "bound/deadline")
 
 
 @pytest.mark.parametrize(
