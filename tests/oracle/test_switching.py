@@ -10,7 +10,7 @@ from carp_reference import plan
 from carp_reference.execution import order_of
 from carp_spec import Carp, Group, Instance, Solution, judge, violations_of
 from carp_spec.execution.execution_rules import trace_violations
-from carproof import Delay
+from carproof import Delay, Resource, ResourceGraph, Robot, execute
 from carproof.execution import switching
 from carproof.execution.delays import executed, in_order, stuck
 from carproof.execution.simulation import random_delays
@@ -69,3 +69,12 @@ def test_robots_that_change_places_are_safe_and_mostly_earlier(
         earlier += sum(unswitched[node] - found.enters[node] for node in lasts)
         assert found.switches > 0 or found.enters == unswitched
     assert earlier > 0
+
+
+def test_who_stays_longer_at_its_goal_is_waited_for() -> None:
+    cells = (Resource("a"), Resource("b"), Resource("c", duration=2))
+    robots = (Robot("r", "a", "b"), Robot("s", "c", "b"))
+    instance = Instance(ResourceGraph(cells, (("a", "b"), ("c", "b"))), robots, "vanish")
+    found = execute(instance, plan(instance, Carp()), "switching", [Delay("r", 1, 3)])
+    assert not found.collisions
+    assert [each.visits[-1].enter for each in found.trace.plans] == [1, 5]

@@ -89,7 +89,7 @@ def delay_named(text: str, instance: Instance, solution: Solution) -> Delay:
 class Execution:
     """The result of a driver with a solution; `followed` is the solution whose order it kept, switches included.
 
-    `late` has, for each robot that arrived late, the ticks by which it did.
+    `late` has, for each robot that arrived, the ticks by which it was later than planned, below 0 if it was earlier.
     """
 
     driver: Driver
@@ -117,8 +117,7 @@ def execute(instance: Instance, solution: Solution, driver: Driver, delays: tupl
     elif driver == "order" or stuck(order):
         enters = in_order(order, delays)
     else:
-        lasts = {(plan.robot, len(plan.visits) - 1) for plan in solution.plans}
-        switched = switching(instance, solution, [each for each in delays if (each.robot, each.visit) not in lasts])
+        switched = switching(instance, solution, delays)
         followed, switches = switched.solution, switched.switches
         enters = switched.enters
         order = order_of(instance, followed)

@@ -33,7 +33,7 @@ class Switched:
 
 
 def switching(instance: Instance, solution: Solution, delays: Sequence[Delay]) -> Switched:
-    """Execute a solution without a cycle; no delay is at the last visit of a robot."""
+    """Execute a solution without a cycle."""
     releases = {(robot.id, 0): robot.release for robot in instance.robots}
     order, known, switches = order_of(instance, solution), list[Delay](), 0
     enters = reached(order, releases)
