@@ -186,11 +186,8 @@ class PlannedFleet:
         return tuple(map(self._columns, held[held != self._noted[self._order]].tolist()))
 
     def replan(self, plans: Sequence[Plan], order: Sequence[RobotId]) -> None:
-        """Take over other plans of robots that have one, and the planning order of all.
-
-        All queries are asked again: plans are withdrawn that have been in the way of others.
-        """
-        self._state.records.expansions[self._records[self._order]] = UNKNOWN
+        """Take over other plans of robots that have one, and the planning order of all."""
+        self._ask_again()
         changed = np.array([self._index[plan.robot] for plan in plans], np.int32)
         records = np.array([self.record(plan) for plan in plans], np.int32)
         self._withdraw(self._records[changed])
@@ -229,9 +226,12 @@ class PlannedFleet:
 
     def has_more_visits(self, than: int) -> bool:
         """Whether all plans together have more visits than that."""
-        if self._state.records.used[1] <= than:
-            return False
-        return int(self._state.records.visits[self._records[self._order]].sum(dtype=np.int64)) > than
+        return int(self._state.records.used[1]) > than and self.visits > than
+
+    @property
+    def visits(self) -> int:
+        """The visits of all plans together."""
+        return int(self._state.records.visits[self._records[self._order]].sum(dtype=np.int64))
 
     def commit(self, plans: Sequence[Plan]) -> None:
         """Take over plans made elsewhere, which must fit the plans of the fleet."""
@@ -503,7 +503,7 @@ class PlannedFleet:
         def find_alone(robot: int) -> int:  # another `_empty`, if there was too little room
             return passes.find_one(self._empty, robot, int(self._records[robot]) if now > 0 else NONE, now)
 
-        able = range(len(self._records)) if now == 0 else sorted(self.order)
+        able = sorted(self._index.values() if now == 0 else self.order)
         found = np.full(len(self._records), NONE, np.int32)
         for robot in able:
             found[robot] = self._call(partial(find_alone, robot))
@@ -530,7 +530,12 @@ class PlannedFleet:
         played = self._call(attempt)
         order = work.queue[: work.counts[QUEUED]].copy()
         self._hold(order, work.plans[order])
+        self._ask_again()
         return played
+
+    def _ask_again(self) -> None:
+        """Let all queries be asked again: plans are withdrawn that have been in the way of others."""
+        self._state.records.expansions[self._records[self._order]] = UNKNOWN
 
     @property
     def worth(self) -> tuple[int, int]:

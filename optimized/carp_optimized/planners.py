@@ -221,9 +221,22 @@ def polish_while(
     by_robot = {each.robot: each for each in whole.plans}
     fleet = _fleet(instance)
     fleet.commit([by_robot[each] for each in whole.order])
+    polish_fleet(fleet, goes_on, last, seed, now, advance)
+    return _solution(instance, fleet.plans, set(fleet.instance.robot))
+
+
+def polish_fleet(
+    fleet: "PlannedFleet",
+    goes_on: Callable[[], bool],
+    last: int | None,
+    seed: int,
+    now: int = 0,
+    advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
+) -> None:
+    """The same for the plans that a fleet has."""
     polishing = fleet.polishing(seed, now)
     played = fleet.polish(polishing, 0)
-    most = rounds_between_looks(whole)
+    most = rounds_between_looks(fleet)
     while played != last and goes_on():
         rounds = most if last is None else min(most, last - played)
         batch = fleet.polish(polishing, rounds)
@@ -231,13 +244,11 @@ def polish_while(
         advance(played, *fleet.worth)
         if batch < rounds:
             break
-    return _solution(instance, fleet.plans, set(fleet.instance.robot))
 
 
-def rounds_between_looks(solution: Solution) -> int:
+def rounds_between_looks(fleet: "PlannedFleet") -> int:
     """How many rounds of a polish are played between two looks at a clock: fewer where each takes long."""
-    visits = sum(len(plan.visits) for plan in solution.plans)
-    return max(ROUNDS * VISITS // max(visits, VISITS), 1)
+    return max(ROUNDS * VISITS // max(fleet.visits, VISITS), 1)
 
 
 def _solution(instance: Instance, plans: tuple[Plan, ...], named: set[RobotId]) -> Solution:

@@ -82,11 +82,12 @@ def test_robots_added_at_once_have_the_plans_of_one_after_the_other(
 
 @pytest.mark.parametrize("part", rest_in("ci", range(4), 0))
 def test_news_of_every_kind_has_the_plans_of_whole_solutions(part: int) -> None:
+    polished = 0
     for number in range(part, QUESTIONS, 4):
         draw = Draw(splitmix64(next(splitmix64(40)) + number))
         mix = replace(CROWDED if number % 3 else ROOMS, stops=draw.one_of((1, 3)), services=(0, 0, 1, 4))
         drawn = draw_instance(draw, mix)
-        options = draw_options(draw)
+        options = replace(draw_options(draw), fallback=None)  # which would shuffle those that have left too
         instance, whole, now, told_at = replace(drawn, robots=()), Solution((), ()), 0, -1
         fleet = Fleet(instance, planner=options)
         for each in drawn.robots:
@@ -112,10 +113,17 @@ def test_news_of_every_kind_has_the_plans_of_whole_solutions(part: int) -> None:
                 after = {plan.robot: plan for plan in told(fleet, Trace(now, (late,)))}
                 told_at = now if after else told_at
                 whole = replace(whole, plans=tuple(after.get(plan.robot, plan) for plan in whole.plans))
+            if draw.happens(3):
+                after = {plan.robot: plan for plan in fleet.polish(iterations=4, seed=number).plans}
+                polished += bool(after)
+                gone = (id for id in whole.order if id not in fleet.instance.robot)
+                plans = tuple(after.get(plan.robot, plan) for plan in whole.plans)
+                whole = replace(whole, plans=plans, order=(*gone, *fleet.solution.order))
             assert check(*fleet.rest()).valid
         known = fleet.rest()
         fleet.forget()
         assert fleet.rest() == known
+    assert polished > 2
 
 
 def assert_news(fleet: Fleet, change: Change, before: Solution, whole: Solution) -> None:
@@ -289,9 +297,11 @@ def test_a_polish_keeps_what_was_done() -> None:
     for asked in drawn:
         fleet = Fleet(asked.instance, planner=Neighbourhood(m=1))
         fleet.advance(3)
-        before = fleet.solution.plans
+        given, before = (fleet.instance, fleet.solution), fleet.solution.plans
         change = fleet.polish(iterations=20)
         changed += len(change.plans)
+        whole = carp_optimized.polish(*given, iterations=20, now=3)
+        assert ({*fleet.solution.plans}, fleet.solution.order) == ({*whole.plans}, whole.order)
         assert check(fleet.instance, fleet.solution).valid
         assert not check_update(before, fleet.solution.plans, 3)
         assert fleet.solution.order == tuple(dict.fromkeys(fleet.solution.order))

@@ -112,7 +112,7 @@ def anneal(
     cycles = CYCLES_OF_LUCK if luck else CYCLES
     current = 0
     from_given = True
-    rounds = rounds_between_looks(solution)
+    rounds = rounds_between_looks(fleet)
     seconds = max(seconds - (clock() - started), BRIEF)
     ending = min(max(ENDING * alone, seconds / LEAST_ENDING), seconds / MOST_ENDING)
     started = clock()

@@ -2,17 +2,19 @@
 
 from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, replace
+from time import perf_counter
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from carp_spec import Instance, Neighbourhood, Plan, Refusal, ResourceId, Robot, RobotId, Solution, Stop
 from carp_spec.documents.solutions import PlanColumns
 from carp_spec.execution.traces import Trace
-from carp_spec.inputs.options import require_planner
+from carp_spec.inputs.options import require_planner, require_polish_options
 from carp_spec.inputs.values import require_instance
 from carp_spec.instance_rules import ROBOT_RULES
 from carp_spec.plan_rules import has_ended, stops_served
 from carp_spec.planners import BY_DEFAULT
+from carp_spec.polish_rules import last_round
 from carp_spec.requests import about_stops, further_stops, require_tick, sound_solution
 from carp_spec.rule import DESIGN
 from carp_spec.shapes import require_shape
@@ -147,7 +149,8 @@ class Fleet:
     """Robots under way on a resource graph, with plans that break no rule together, while time goes on.
 
     What is not told is taken to have happened as planned. With `vanish` a robot leaves the fleet when its plan has
-    ended. What is refused or fails leaves the fleet as it was. Plans are those that `add` makes at the same ticks.
+    ended. What is refused or fails leaves the fleet as it was. Plans are those that `add` makes at the same ticks; only
+    the planner's `fallback` shuffles the robots of the fleet alone, where `add` shuffles those that have left too.
     With `audit` a change is proved: the law judges all plans, and no robot of a changed plan, with what it has done by
     the tick `now`, can arrive earlier beside the plans before its own.
     """
@@ -285,24 +288,31 @@ class Fleet:
         others = tuple(plan for plan in held_up(instance, solution, trace).plans if plan.robot not in told)
         whole = Trace(now, (*trace.plans, *until(Trace(now, others), now).plans))
         after = retime(instance, solution, whole)
-        return self._replan(now, after, after.plans if audit else None, told=now)
+        core = self._taken()
+        core.replan([plan for plan in after.plans if plan != self._known.plans[plan.robot].plan], after.order)
+        return self._take_over(core, now, after.plans if audit else None, told=now)
 
     def polish(
         self, *, iterations: int | None = None, seconds: float | None = None, seed: int = 0, audit: bool = False
     ) -> Change:
-        """Improve the plans of the rest of the way as `carproof.polish` does; raises `Refusal` for wrong options."""
-        polish = engine_named("optimized").polish
-        before = self.instance, self.solution
-        better = polish(*before, iterations=iterations, seconds=seconds, seed=seed, now=self._known.from_tick(self.now))
-        return self._replan(self.now, better, self._before(audit))
+        """Improve the plans of the rest of the way as `carproof.polish` does; raises `Refusal` for wrong options.
+
+        Draws are among the robots of the fleet, in the order of their places in memory.
+        """
+        from carp_optimized.planners import polish_fleet  # noqa: PLC0415 - planners are loaded when needed
+
+        started = perf_counter()
+        require_polish_options(iterations, seconds, seed)
+        before, core, now = self._before(audit), self._taken(), self._known.from_tick(self.now)
+
+        def goes_on() -> bool:
+            return seconds is None or perf_counter() - started < seconds
+
+        polish_fleet(core, goes_on, last_round(iterations, seconds), seed, now)
+        return self._take_over(core, self.now, before)
 
     def _before(self, audit: bool) -> Sequence[Plan] | None:
         return [each.plan for each in self._known.plans.values()] if audit else None
-
-    def _replan(self, now: int, solution: Solution, before: Sequence[Plan] | None, told: int | None = None) -> Change:
-        core = self._taken()
-        core.replan([plan for plan in solution.plans if plan != self._known.plans[plan.robot].plan], solution.order)
-        return self._take_over(core, now, before, told=told)
 
     def _tick(self, now: int | None) -> int:
         if now is None:
