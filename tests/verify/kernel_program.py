@@ -3,8 +3,9 @@
 import fcntl
 import json
 import os
+import re
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 from shutil import which
@@ -13,7 +14,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from carp_spec import Instance, Solution
+from carp_spec import Instance, Refusal, Solution
 from carp_spec.documents.bounds import BoundDocument
 from carp_spec.documents.instances import instance_document
 from carp_spec.documents.solutions import solution_document
@@ -83,6 +84,24 @@ def check(instance: Instance, solution: Solution) -> Json:
 def check_bound(instance: Instance, certificate: BoundDocument) -> Json:
     """The kernel's answer about the certificate of a bound."""
     return ask(encoded(op="verify-bound", instance=instance_document(instance), certificate=certificate))
+
+
+def refusal_of(read: Callable[[], object]) -> Refusal | None:
+    """Why Python does not read or accept something, if it does not."""
+    try:
+        read()
+    except Refusal as refusal:
+        return refusal
+    return None
+
+
+def require_bad_input(answer: Json, refusal: Refusal, name: str) -> None:
+    """The kernel cannot read the document of that name by the same rule and, of a list of values, in one of them."""
+    assert (answer["verdict"], answer["rule"]) == ("bad input", refusal.rule)
+    ours, theirs = (
+        re.sub(r"(\[\d+\])+$", "", path) for path in (f"$.{name}{refusal.path.removeprefix('$')}", answer["path"])
+    )
+    assert ours.startswith(theirs) or theirs.startswith(ours)
 
 
 def encoded(**request: object) -> str:

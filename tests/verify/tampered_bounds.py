@@ -27,12 +27,13 @@ def cut(**fields: object) -> Tamper:
 
 
 def deadlines(**fields: object) -> Tamper:
-    """Change the only deadlines, and put the claims right where robots and sights are of one number."""
+    """Change the only deadlines, and put the claims right if that makes whole ones."""
 
     def tamper(certificate: BoundDocument) -> BoundDocument:
         changed: Any = msgspec.structs.replace(certificate.deadlines[0], **fields)
         tampered = msgspec.structs.replace(certificate, deadlines=(changed,))
-        return tampered if len(changed.seen) == 1 else completed(crossing(), tampered)
+        has_whole_claims = len(changed.seen) != 1 and type(changed.price) is not float
+        return completed(crossing(), tampered) if has_whole_claims else tampered
 
     return tamper
 

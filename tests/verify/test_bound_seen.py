@@ -8,8 +8,7 @@ from itertools import chain, combinations
 from typing import Any
 
 import msgspec
-import pytest
-from tests.verify.bound_examples import completed, crossing, sight_certificate
+from tests.verify.bound_examples import completed
 from tests.verify.kernel_program import program
 from tests.verify.tiny import case
 
@@ -130,19 +129,3 @@ def test_the_kernel_refuses_claims_that_are_a_part_of_a_tick_too_high() -> None:
             robots[position] = (name, (least or 0) + 1)
             forged.append((instance, msgspec.structs.replace(certificate, robots=tuple(robots))))
     assert {answer.get("rule") for answer in verdicts(forged)} == {"bound/robots"}
-
-
-@pytest.mark.parametrize(
-    ("seen", "path", "expected"),
-    [
-        ([[1, ["middle"]], [1]], "$.certificate.deadlines[0].seen[1]", "an array of a tick and an array of resources"),
-        ([[1, ["middle"]], [1, "middle"]], "$.certificate.deadlines[0].seen[1][1]", "an array"),
-        ([[1, ["middle"]], [1.0, ["middle"]]], "$.certificate.deadlines[0].seen[1][0]", "a whole number"),
-    ],
-)
-def test_malformed_sights_are_bad_input(seen: object, path: str, expected: str) -> None:
-    document = msgspec.to_builtins(sight_certificate())
-    document["deadlines"][0]["seen"] = seen
-    (answer,) = verdicts([(crossing(), document)])
-    assert (answer["verdict"], answer["path"]) == ("bad input", path)
-    assert answer["message"] == f"expected {expected}"
