@@ -29,7 +29,7 @@ def changed(document: Any) -> Iterator[Any]:  # noqa: ANN401 - any JSON value
 def replaced(value: Any) -> Iterator[Any]:  # noqa: ANN401 - any JSON value
     """Other values in place of one."""
     if isinstance(value, int) and not isinstance(value, bool):
-        numbers = (value + 1, value - 1, -value, 2 * value, value // 2, value + 2**16, 10**9, FAR, -FAR)
+        numbers = (0, value + 1, value - 1, -value, 2 * value, value // 2, value + 2**16, 10**9, FAR, -FAR)
         yield from (number for number in dict.fromkeys(numbers) if number != value)
     yield from (stranger for stranger in STRANGERS if stranger != value)
     if isinstance(value, str):
