@@ -83,7 +83,7 @@ def test_robots_that_failed_are_planned_first_and_a_robot_without_path_changes_n
 
 
 def test_a_pocket_is_used_up_to_its_capacity() -> None:
-    for capacity, others, left_out in ((2, 1, 0), (2, 2, 1), (3, 2, 0)):
+    for capacity, others, left_out in ((2, 1, 0), (2, 2, 1), (3, 2, 0), (10**9, 2, 0)):
         instance = passage(pocket=True, capacity=capacity, others=others)
         repaired = repair(instance, plan(instance, Carp()))
         assert judge(instance, repaired).valid

@@ -1,6 +1,7 @@
 """The commands about executions: `check-trace`, `dependencies`, `execute`, `retime`, `untangle`."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -189,6 +190,16 @@ def test_a_rotation_is_untangled_at_least_cost_or_named(carproof: Run, elsewhere
     outcome = carproof("execution untangle closed.json turning.json -o in-order.json --engine reference")
     assert (outcome.code, outcome.stdout, out.exists()) == (1, "", False)
     assert outcome.stderr.startswith("Out of the rotation of the robots ")
+
+
+def test_a_rotation_over_a_place_with_room_for_any_number_is_untangled() -> None:
+    instance, turning = read_instance(line(**moves(RING))), read_solution(line(**steps(RING)))
+    for capacity in (len(RING), 10**9):
+        wide = (replace(instance.graph.resources[0], capacity=capacity), *instance.graph.resources[1:])
+        found = untangle(
+            replace(instance, graph=replace(instance.graph, resources=wide)), turning, engine_named("reference")
+        )
+        assert (found.extra, found.rotation) == (1, ())
 
 
 def test_a_rotation_that_there_is_no_time_for_stays(carproof: Run) -> None:

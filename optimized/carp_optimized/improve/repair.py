@@ -174,12 +174,14 @@ class _Finder:
     """Plans single robots among the plans of others, and away from further plans, which may overlap.
 
     A fleet accepts overlapping plans only where capacities are larger than 1. So all capacities are doubled, each plan
-    of the others counts twice, and a visit to be avoided fills its resource.
+    of the others counts twice, and a visit to be avoided fills its resource. No resource has room for more than
+    all robots.
     """
 
     def __init__(self, instance: Instance, others: Sequence[Plan]) -> None:
         graph = instance.graph
-        doubled = tuple(replace(each, capacity=2 * each.capacity) for each in graph.resources)
+        most = max(1, len(instance.robots))
+        doubled = tuple(replace(each, capacity=2 * min(each.capacity, most)) for each in graph.resources)
         twins = tuple(replace(each, id=_twin(each.id)) for each in instance.robots)
         self._instance = instance
         self._capacity = {each.id: each.capacity for each in doubled}

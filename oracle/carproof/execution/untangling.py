@@ -66,8 +66,13 @@ def query_kept_out(
 ) -> Plan | None:
     """The earliest plan of the robot beside the others that makes none of these visits.
 
-    Each visit is filled with as many extra robots as have room; they exist only in the instance of the query.
+    Each visit is filled with as many extra robots as have room; they exist only in the instance of the query, where no
+    resource has room for more than all other robots.
     """
+    graph, most = instance.graph, len(instance.robots)
+    if any(graph.resource[block.resource].capacity > most for block in blocks):
+        resources = tuple(replace(each, capacity=min(each.capacity, most)) for each in graph.resources)
+        graph = replace(graph, resources=resources)
     guards: list[Plan] = []
     taken = {each.id for each in instance.robots}
     number = len(taken)
@@ -79,7 +84,7 @@ def query_kept_out(
             for plan in others
             for visit in plan.visits
         )
-        for _ in range(instance.graph.resource[block.resource].capacity - here):
+        for _ in range(graph.resource[block.resource].capacity - here):
             while number in taken:
                 number += 1
             taken.add(number)
@@ -88,4 +93,4 @@ def query_kept_out(
         *instance.robots,
         *(Robot(guard.robot, guard.visits[0].resource, guard.visits[0].resource) for guard in guards),
     )
-    return engine.find(replace(instance, robots=robots), [*others, *guards], robot)
+    return engine.find(replace(instance, graph=graph, robots=robots), [*others, *guards], robot)
