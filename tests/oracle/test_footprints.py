@@ -9,23 +9,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.oracle.layout_files import lif
-from tests.oracle.roadmaps import Place, graphml
+from tests.oracle.roadmaps import Place
 from tests.oracle.running import Run
+from tests.oracle.test_footprint_check import kept_apart, plant
 
-from carproof import Footprint, Instance, Settings, import_layout, read_instance
+from carproof import Footprint, Settings, import_layout, read_instance
 from carproof.engines import engine_named
-
-
-def roadmap(lanes: list[tuple[Place, Place]], **settings: object) -> Instance:
-    """One-way lanes with ends in mm; a point is named by its place."""
-    made = import_layout(graphml(lanes), settings=Settings(**({"robots": 0} | settings)))  # type: ignore[arg-type]
-    return made.instance
 
 
 def apart(lanes: list[tuple[Place, Place]], size: Footprint) -> bool:
     """Whether the first two lanes may be used together."""
     names = {f"{a},{b} -> {c},{d}" for (a, b), (c, d) in lanes[:2]}
-    return not any(names <= set(each.resources) for each in roadmap(lanes, footprint=size).graph.groups)
+    return names not in kept_apart(plant(lanes, footprint=size), size)
 
 
 @pytest.mark.parametrize(
@@ -47,8 +42,8 @@ def test_lanes_that_cross_near_the_end_of_one_are_found() -> None:
 
 def test_the_nearest_points_of_two_lanes_may_be_their_starts() -> None:
     """5 and 3 mm apart, 34 in square, where discs of a radius of 3 mm need 36."""
-    assert not apart([((0, 0), (1, 0)), ((-5, 3), (-6, 3))], Footprint(6, 6, round=True))
-    assert apart([((0, 0), (1, 0)), ((-6, 0), (-7, 0))], Footprint(6, 6, round=True))
+    assert not apart([((0, 0), (2, 0)), ((-5, 3), (-7, 3))], Footprint(6, 6, round=True))
+    assert apart([((0, 0), (2, 0)), ((-6, 0), (-8, 0))], Footprint(6, 6, round=True))
 
 
 def test_slanted_lanes_are_compared_without_rounding() -> None:
@@ -66,8 +61,7 @@ def test_a_vehicle_that_turns_sweeps_a_disc_and_one_that_goes_on_does_not() -> N
 
     def meets(bend: Place, gap: int) -> bool:
         lanes = [((0, 0), (5000, 0)), ((5000, 0), bend), ((0, -gap), (9000, -gap))]
-        groups = roadmap(lanes, footprint=size).graph.groups
-        return any({"5000,0", f"0,{-gap} -> 9000,{-gap}"} <= set(each.resources) for each in groups)
+        return {"5000,0", f"0,{-gap} -> 9000,{-gap}"} in kept_apart(plant(lanes, footprint=size), size)
 
     assert meets((5000, 5000), 799)
     assert not meets((5000, 5000), 800)
@@ -128,7 +122,7 @@ def test_a_footprint_needs_positions(carproof: Run, elsewhere: Path) -> None:
 
 coordinates = st.integers(0, 20)
 places = st.tuples(coordinates, coordinates)
-segments = st.tuples(places, places).filter(lambda ends: ends[0] != ends[1])
+segments = st.tuples(places, places).filter(lambda ends: max(abs(a - b) for a, b in zip(*ends, strict=True)) > 1)
 
 
 def swept(lane: tuple[Place, Place], size: Footprint, x: int, y: int) -> bool:
@@ -155,12 +149,12 @@ def test_lanes_that_sweep_one_place_are_never_used_together(
 
 def test_a_turn_takes_its_time_and_a_straight_way_none() -> None:
     corner = [((0, 0), (1000, 0)), ((1000, 0), (2000, 0)), ((1000, 0), (1000, 1000)), ((1000, 0), (0, 1000))]
-    instance = roadmap(corner, turning=Fraction(3))
+    instance = plant(corner, turning=Fraction(3))
     rows = [("0,0", "2000,0", 0), ("0,0", "1000,1000", 3), ("0,0", "0,1000", 6)]
     for start, goal, turning in rows:
         asked = f'robot,start,goal\nr1,"{start}","{goal}"\n'.encode()
         plans = [
-            engine_named("reference").find(roadmap(corner, turning=time, requests=asked, robots=None), [], "r1")
+            engine_named("reference").find(plant(corner, turning=time, requests=asked, robots=None), [], "r1")
             for time in (Fraction(3), None)
         ]
         slow, fast = (plan.visits[-1].enter for plan in plans if plan is not None)
