@@ -1,7 +1,14 @@
 """Forgeries: every way to change one thing in a document, or in the lines of a proof."""
 
-from collections.abc import Iterator
+import json
+from collections.abc import Iterator, Mapping
+from hashlib import sha256
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
+
+from carp_spec import Instance
+from carp_verify.optimum.proof import ProofError, Verified, verify_proof
 
 FAR = 10**99
 STRANGERS: tuple[object, ...] = ("moon", -1, True, 1.5, None, [])
@@ -58,3 +65,19 @@ def changed_words(line: str) -> Iterator[str]:
         for variant in ((), (-number,), (number + 1,), (number - 1,), (0,), (number, number)):
             if variant != (number,):
                 yield " ".join((*before, *map(str, variant), *after))
+
+
+def verified_with(folder: Path, files: Mapping[str, bytes], instance: Instance | None = None) -> Verified | None:
+    """What a proof directory proves with some files replaced, or added, and the digests of all right; or `None`."""
+    contents = {**{path.name: path.read_bytes() for path in folder.iterdir()}, **files}
+    manifest = json.loads(contents["manifest.json"])
+    if isinstance(manifest.get("sha256"), dict):
+        named = manifest["sha256"].keys() & contents.keys()
+        manifest["sha256"] |= {name: sha256(contents[name]).hexdigest() for name in named}
+    with TemporaryDirectory() as forged:
+        for name, content in {**contents, "manifest.json": json.dumps(manifest).encode()}.items():
+            (Path(forged) / name).write_bytes(content)
+        try:
+            return verify_proof(Path(forged), instance)
+        except ProofError:
+            return None

@@ -5,9 +5,11 @@ from dataclasses import dataclass, replace
 
 from tests.spec.making import plan_of
 
+import carp_reference
 from carp_reference.certifying import Certifier
-from carp_spec import AfterGoal, Instance, Plan, Resource, ResourceGraph, Robot, RobotId, Solution, Stop
+from carp_spec import AfterGoal, Instance, Plan, Refusal, Resource, ResourceGraph, Robot, RobotId, Solution, Stop
 from carp_spec.documents.query_certificates import QueryCertificateDocument
+from carp_verify.query.verify import verify_query
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +30,20 @@ class Question:
         certifier = Certifier(self.instance)
         certifier.commit([plan for plan in self.solution.plans if plan.robot != self.robot])
         return certifier.certify(self.robot, self.followed, self.now)
+
+    def rule_broken(self, certificate: QueryCertificateDocument) -> str | None:
+        """The rule by which the certificate is refused beside these plans, or `None`."""
+        try:
+            verify_query(self.instance, self.solution, certificate)
+        except Refusal as refusal:
+            return refusal.rule
+        return None
+
+    def is_true(self, certificate: QueryCertificateDocument) -> bool:
+        """Whether no plan of the robot named arrives before the bound, by the reference."""
+        bound, plans = certificate.bound, self.solution.plans
+        best = carp_reference.query(self.instance, plans, certificate.robot, certificate.now)
+        return best is None or (bound is not None and bound <= best.visits[-1].enter)
 
 
 def town(after_goal: AfterGoal, *robots: Robot, directed: bool = False, capacity: int = 1) -> Instance:

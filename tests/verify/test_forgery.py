@@ -14,12 +14,10 @@ from pathlib import Path
 import msgspec
 import pytest
 from tests.verify.bound_examples import completed, crossing, cut_certificate
-from tests.verify.forging import FAR, changed, changed_lines
-from tests.verify.query_examples import QUESTIONS, Question, fleets
+from tests.verify.forging import FAR, changed, changed_lines, verified_with
+from tests.verify.query_examples import QUESTIONS, fleets
 from tests.verify.test_proof import crossing as four_crossing
-from tests.verify.test_proof import with_digests
 
-import carp_reference
 from carp_optimum.bound import lower_bound
 from carp_optimum.optimum import optimum
 from carp_optimum.sat.proving import write_proof
@@ -28,7 +26,6 @@ from carp_spec.documents.bounds import BoundDocument, CutDocument, read_bound
 from carp_spec.documents.decoding import write
 from carp_spec.documents.instances import digest
 from carp_spec.documents.query_certificates import (
-    QueryCertificateDocument,
     ServedLayer,
     certificate_of,
     read_query_certificate,
@@ -38,9 +35,7 @@ from carp_verify.bound.verify import verify_bound
 from carp_verify.optimum.clauses import dimacs
 from carp_verify.optimum.encoding import Evidence, beat_formula, reach_formula
 from carp_verify.optimum.joint_search import least_total_cost
-from carp_verify.optimum.proof import FILES, ProofError, verify_proof
 from carp_verify.optimum.refutation import NotRefutedError, read_steps, require_refutation
-from carp_verify.query.verify import verify_query
 
 LONG = 60
 
@@ -179,21 +174,6 @@ def test_harmless_variants_of_a_bound_are_accepted() -> None:
         assert accepted(crossing(), put_right(crossing(), write(variant))) == certificate.bound
 
 
-def is_accepted(question: Question, certificate: QueryCertificateDocument) -> bool:
-    try:
-        verify_query(question.instance, question.solution, certificate)
-    except Refusal:
-        return False
-    return True
-
-
-def is_true(question: Question, certificate: QueryCertificateDocument) -> bool:
-    """Whether no plan of the robot named arrives before the bound, by the reference."""
-    plans, robot, now = question.solution.plans, certificate.robot, certificate.now
-    best = carp_reference.query(question.instance, plans, robot, now)
-    return best is None or (certificate.bound is not None and certificate.bound <= best.visits[-1].enter)
-
-
 @pytest.mark.parametrize("name", QUESTIONS)
 def test_no_change_of_a_query_certificate_makes_it_prove_too_much(name: str) -> None:
     question = QUESTIONS[name]
@@ -204,8 +184,8 @@ def test_no_change_of_a_query_certificate_makes_it_prove_too_much(name: str) -> 
             forged = read_query_certificate(json.dumps(document).encode())
         except Refusal:
             continue
-        accepted = is_accepted(question, forged)
-        assert not accepted or is_true(question, forged), document
+        accepted = question.rule_broken(forged) is None
+        assert not accepted or question.is_true(forged), document
         outcomes[accepted] += 1
     assert outcomes[False] > 2
     assert outcomes[True] > 5
@@ -215,7 +195,7 @@ def test_no_query_certificate_proves_too_much_beside_other_plans_or_of_another_r
     for question in QUESTIONS.values():
         for other in (each for every in QUESTIONS.values() for each in fleets(every)):
             certificate = other.certified()[1]
-            assert not is_accepted(question, certificate) or is_true(question, certificate)
+            assert question.rule_broken(certificate) is not None or question.is_true(certificate)
 
 
 def test_no_later_bound_is_accepted_with_the_labels_of_the_search_for_it() -> None:
@@ -228,7 +208,8 @@ def test_no_later_bound_is_accepted_with_the_labels_of_the_search_for_it() -> No
         for bound in (plan.visits[-1].enter + 1, FAR, None):
             for those in (None, (*labels,), ()):
                 layers = [each if those is None else ServedLayer(those, each.potential) for each in honest.layers]
-                assert not is_accepted(question, certificate_of(honest.robot, honest.now, bound, layers))
+                forged = certificate_of(honest.robot, honest.now, bound, layers)
+                assert question.rule_broken(forged) is not None
 
 
 @cache
@@ -246,18 +227,9 @@ def written_proof(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def is_proved(folder: Path, files: dict[str, bytes]) -> int | None:
-    """The cost that is accepted of the directory with some files replaced and its digests right, or `None`."""
-    kept = {name: (folder / name).read_bytes() for name in ("manifest.json", *FILES)}
-    try:
-        for name, content in files.items():
-            (folder / name).write_bytes(content)
-        with_digests(folder)
-        return verify_proof(folder, four_crossing()).cost
-    except ProofError:
-        return None
-    finally:
-        for name, content in kept.items():
-            (folder / name).write_bytes(content)
+    """The cost that is accepted with some files replaced, or `None`."""
+    verified = verified_with(folder, files, four_crossing())
+    return None if verified is None else verified.cost
 
 
 def test_no_change_of_a_manifest_proves_another_cost(proof: Path) -> None:

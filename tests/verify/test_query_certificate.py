@@ -14,8 +14,8 @@ from tests.verify.query_examples import EAST, QUESTIONS, VANISHING, WESTWARDS, Q
 import carp_optimized.certifying
 import carp_reference
 import carp_verify.query.rules
-from carp_spec import Plan, Refusal, Robot, Visit
-from carp_spec.documents.query_certificates import QueryCertificateDocument, ServedLayer, certificate_of
+from carp_spec import Plan, Robot, Visit
+from carp_spec.documents.query_certificates import ServedLayer, certificate_of
 from carp_spec.model import Following
 from carp_spec.windows import Window
 from carp_verify.query.rules import QUERY_CERTIFICATE_RULES
@@ -27,21 +27,6 @@ SMALL_TICKS = st.integers(-1, 12)
 
 def arrival(plan: Plan | None) -> int | None:
     return None if plan is None else plan.visits[-1].enter
-
-
-def rule_broken(question: Question, certificate: QueryCertificateDocument) -> str | None:
-    """The rule by which the certificate is refused, or `None`."""
-    try:
-        verify_query(question.instance, question.solution, certificate)
-    except Refusal as refusal:
-        return refusal.rule
-    return None
-
-
-def is_true(question: Question, bound: int | None) -> bool:
-    """Whether no plan arrives before the bound, by the reference."""
-    best = arrival(carp_reference.query(question.instance, question.solution.plans, question.robot, question.now))
-    return best is None or (bound is not None and bound <= best)
 
 
 @pytest.mark.parametrize("name", QUESTIONS)
@@ -110,9 +95,7 @@ def test_whatever_is_accepted_is_true(fleet: FleetUnderWay, data: st.DataObject)
         data.draw(st.sampled_from([certificate.bound, None]) | SMALL_TICKS),
         layers,
     )
-    if rule_broken(question, changed) is None:
-        asked = replace(question, robot=changed.robot, now=changed.now)
-        assert is_true(asked, changed.bound)
+    assert question.rule_broken(changed) is not None or question.is_true(changed)
 
 
 def _changed(layer: ServedLayer, data: st.DataObject) -> ServedLayer:
@@ -162,7 +145,7 @@ def test_of_a_certificate_over_stops_nothing_can_be_left_out_or_changed(name: st
         forged = certificate_of(
             honest.robot, honest.now, honest.bound, [*layers[:served], layer, *layers[served + 1 :]]
         )
-        return rule_broken(question, forged)
+        return question.rule_broken(forged)
 
     for served, (labels, potential) in enumerate((each.labels, each.potential) for each in layers):
         for k, (resource, tick) in enumerate(labels):
@@ -174,21 +157,21 @@ def test_of_a_certificate_over_stops_nothing_can_be_left_out_or_changed(name: st
             assert broken_with(served, labels, higher) == "query-certificate/potential"
             assert broken_with(served, labels, (*potential[:k], *potential[k + 1 :])) is not None
     if honest.bound is not None:
-        assert rule_broken(question, msgspec.structs.replace(honest, bound=honest.bound + 1)) is not None
+        assert question.rule_broken(msgspec.structs.replace(honest, bound=honest.bound + 1)) is not None
 
 
 @pytest.mark.parametrize(("rule", "name", "changes"), BROKEN)
 def test_each_rule_refuses_what_breaks_it(rule: str, name: str, changes: dict[str, Any]) -> None:
     question = QUESTIONS[name]
     certificate = msgspec.structs.replace(question.certified()[1], **changes)
-    assert rule_broken(question, certificate) == rule
+    assert question.rule_broken(certificate) == rule
 
 
 def test_plans_that_break_a_rule_or_are_of_one_robot_or_of_none_are_refused() -> None:
     certificate = QUESTIONS["head-on"].certified()[1]
     jumping, stranger = plan_of("s", ("d", 0, 1), ("a", 1, 2)), plan_of("moon", ("a", 0, 1))
     for plans in ((jumping,), (WESTWARDS, WESTWARDS), (stranger,)):
-        assert rule_broken(beside(VANISHING, "r", *plans), certificate) == "query-certificate/plans"
+        assert beside(VANISHING, "r", *plans).rule_broken(certificate) == "query-certificate/plans"
 
 
 def test_each_rule_has_a_test() -> None:
@@ -228,10 +211,10 @@ def test_a_size_that_is_too_large_is_refused_before_anything_is_looked_at(monkey
     question = QUESTIONS["head-on"]
     certificate = question.certified()[1]
     monkeypatch.setattr(carp_verify.query.rules, "LARGEST_CHECK", 10)
-    assert rule_broken(question, certificate) == "query-certificate/size"
+    assert question.rule_broken(certificate) == "query-certificate/size"
     far = msgspec.structs.replace(certificate, labels=certificate.labels * 3_000_000)
     monkeypatch.undo()
-    assert rule_broken(question, far) == "query-certificate/size"
+    assert question.rule_broken(far) == "query-certificate/size"
 
 
 def test_labels_and_potentials_of_resources_that_there_are_not_mean_nothing() -> None:
@@ -242,7 +225,7 @@ def test_labels_and_potentials_of_resources_that_there_are_not_mean_nothing() ->
         labels=(*certificate.labels, ("moon", 0), ("a", -5), ("a", 10**99)),
         potential=(*certificate.potential, ("moon", 1)),
     )
-    assert rule_broken(question, more) is None
+    assert question.rule_broken(more) is None
 
 
 @pytest.mark.parametrize("name", ["head-on", "ended"])
@@ -251,7 +234,7 @@ def test_a_bound_that_is_lower_is_accepted_too(name: str) -> None:
     certificate = question.certified()[1]
     assert certificate.bound is not None
     for bound in (certificate.bound - 1, 0, -(10**99)):
-        assert rule_broken(question, msgspec.structs.replace(certificate, bound=bound)) is None
+        assert question.rule_broken(msgspec.structs.replace(certificate, bound=bound)) is None
 
 
 def test_ticks_of_any_size_are_checked() -> None:
@@ -268,7 +251,7 @@ def test_a_window_late_in_time_needs_a_label_if_the_robot_fits_into_it() -> None
     plan, certificate = question.certified()
     assert arrival(plan) == 10
     later = msgspec.structs.replace(certificate, bound=16, labels=(*certificate.labels, ("b", 14)))
-    assert rule_broken(question, later) == "query-certificate/closed"
+    assert question.rule_broken(later) == "query-certificate/closed"
 
 
 def test_a_plan_that_has_ended_is_as_early_as_its_last_visit() -> None:
