@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice
 
+from carp_spec.inputs.options import require_limits
 from carp_spec.inputs.values import known, require_known, require_plans, require_solution, require_update
 from carp_spec.joint_rules import JOINT_RULES, SOLUTION_RULES
 from carp_spec.model import Instance, Plan, Solution
@@ -34,6 +35,7 @@ def violations_of(instance: Instance, plans: Sequence[Plan], most: int | None = 
     Raises `Refusal` for malformed input and unknown robots.
     """
     require_known(instance, require_plans(instance, plans).plans)
+    require_limits(most=most)
     return _violations(instance, plans, most)
 
 
@@ -58,6 +60,7 @@ def solution_violations(
 def judge(instance: Instance, solution: Solution, most: int | None = MOST_LISTED) -> Verdict:
     """Check a whole solution; plans of unknown robots break `solution/covers` alone."""
     require_solution(instance, solution)
+    require_limits(most=most)
     plans = [plan for plan in solution.plans if plan.robot in instance.robot]
     planned = {plan.robot for plan in plans}
     verdict = Verdict(

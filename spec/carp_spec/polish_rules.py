@@ -8,7 +8,7 @@ from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import accumulate, islice
-from math import inf
+from sys import float_info
 from typing import Any, Literal, TypeAlias, TypeVar, cast
 
 from carp_spec.model import Plan, ResourceId, Visit
@@ -170,7 +170,7 @@ def options_are_right(iterations: object, seconds: object, seed: object) -> Foun
     if iterations is not None and not is_between(iterations, 0):
         yield "$.iterations", f"the iterations must be a whole number of at least 0, not {iterations!r}"
     is_number = isinstance(seconds, int | float) and not isinstance(seconds, bool)
-    if not (seconds is None or (is_number and 0 < cast("float", seconds) < inf)):
+    if not (seconds is None or (is_number and 0 < cast("float", seconds) <= float_info.max)):
         yield "$.seconds", f"the seconds must be a number above 0, not {seconds!r}"
     if not is_between(seed, 0, LARGEST_SEED):
         yield "$.seed", f"the seed must be a whole number between 0 and {LARGEST_SEED}, not {seed!r}"

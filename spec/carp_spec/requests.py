@@ -6,7 +6,6 @@ The rules are those of `carproof.requests`.
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import cast
 
 from carp_spec.check import judge, solution_violations, violations_of
 from carp_spec.execution.traces import Trace
@@ -18,7 +17,7 @@ from carp_spec.plan_rules import has_ended
 from carp_spec.planners import Neighbourhood
 from carp_spec.refusal import Refusal
 from carp_spec.rule import Violation, is_between
-from carp_spec.shapes import SHAPE, require_shape
+from carp_spec.shapes import SHAPE, require_each, require_shape
 
 
 def require_robot(instance: Instance, robot: RobotId, path: str = "$.robot") -> None:
@@ -78,7 +77,7 @@ def require_assignment(
 
 def further_stops(instance: Instance, robot: Robot, stops: Sequence[Stop]) -> Robot:
     """The robot with these stops behind its own; raises `Refusal` where they break `instance/stops`."""
-    require_shape(tuple(stops) if isinstance(cast("object", stops), Sequence) else stops, tuple[Stop, ...], "$.stops")
+    require_each(stops, Stop, "$.stops")
     if not stops:
         raise Refusal("request", "$.stops", stops_are_places_to_serve.id, "there must be at least one stop")
     further = replace(robot, stops=(*robot.stops, *stops))

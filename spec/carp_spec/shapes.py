@@ -58,6 +58,11 @@ def require_shape(value: object, kind: Any, path: str = "$") -> None:  # noqa: A
         raise Refusal("document", path, SHAPE, f"it must be {right}, not {shown(value)}")
 
 
+def require_each(values: object, kind: Any, path: str) -> None:  # noqa: ANN401 - any type
+    """Raise `Refusal` unless it is a sequence of values of the type."""
+    require_shape(tuple(values) if isinstance(values, Sequence) else values, tuple[kind, ...], path)
+
+
 def of_shape(path: str) -> Callable[[Callable[[T], None]], Callable[[T], None]]:
     """Make a method of a class raise `Refusal` where it fails because the fields are malformed."""
 

@@ -40,6 +40,7 @@ from carp_spec.shapes import of_shape
 from carp_verify.certificate import certify
 from carp_verify.optimum.joint_search import least_total_cost
 from carp_verify.query.verify import verify_query
+from carproof import Delay
 from carproof.formats import named_as, read_foreign_solution, write_foreign_solution
 from carproof.formats.plans.vda5050 import write_orders
 from carproof.generate import Fleet, Grid, Range, Traits, Warehouse, grid_instance, warehouse_instance
@@ -324,10 +325,44 @@ def test_plans_that_collide_are_refused(engine: Any) -> None:  # noqa: ANN401 - 
         (lambda: carproof.optimum(RIGHT, True), "$.limit"),
         (lambda: carproof.bound(RIGHT, seconds=-1), "$.seconds"),
         (lambda: carproof.bound(RIGHT, steps=0.5), "$.steps"),  # type: ignore[arg-type]
+        (lambda: carproof.bound(RIGHT, seconds=10**400), "$.seconds"),
+        (lambda: carproof.optimum(RIGHT, None), "$.limit"),  # type: ignore[arg-type]
+        (lambda: write_proof(RIGHT, carproof.optimum(RIGHT, 1), Path("nowhere"), float("nan")), "$.limit"),
+        (lambda: carproof.check(RIGHT, SOLVED, -1), "$.most"),
+        (lambda: carproof.judge_log(RIGHT, NOTHING, 2**64), "$.most"),
+        (lambda: carp_spec.violations_of(RIGHT, SOLVED.plans, 0.5), "$.most"),  # type: ignore[arg-type]
     ],
 )
 def test_a_malformed_limit_is_refused_like_its_op(search: Callable[[], object], path: str) -> None:
     assert refused(search)[1:] == ("request/limit", path)
+
+
+NO_DELAY: Any = [("r", 0, 1)]
+NO_TICKS: Any = [Delay("r", 0, True)]
+NO_FOOTPRINT: Any = (900, 600)
+NONE: Any = None
+
+
+@pytest.mark.parametrize(
+    ("ask", "rule", "path"),
+    [
+        (lambda: carproof.execute(RIGHT, SOLVED, "order", NO_DELAY), "document/shape", "$.delays[0]"),
+        (lambda: carproof.execute(RIGHT, SOLVED, "order", NO_TICKS), "document/shape", "$.delays[0].ticks"),
+        (lambda: carproof.execute(RIGHT, SOLVED, "order", NONE), "document/shape", "$.delays"),
+        (lambda: carproof.check_grants(RIGHT, SOLVED, NOTHING, NONE), "document/shape", "$.grants"),
+        (lambda: carproof.check_update(NONE, (), 0), "document/shape", "$.before"),
+        (lambda: carproof.check(RIGHT, SOLVED, footprint=NO_FOOTPRINT), "footprint/vehicle", "$.footprint"),
+        (lambda: carproof.polish(RIGHT, SOLVED, seconds=10**400), "polish/options", "$.seconds"),
+    ],
+)
+def test_other_malformed_arguments_are_refused(ask: Callable[[], object], rule: str, path: str) -> None:
+    assert refused(ask)[1:] == (rule, path)
+
+
+def test_none_is_no_solution_beside_one_that_is_gone() -> None:
+    instance = replace(RIGHT)
+    carproof.check(instance, replace(SOLVED))
+    assert refused(lambda: carproof.audit(instance, NONE))[1:] == ("document/shape", "$")
 
 
 @pytest.mark.parametrize(

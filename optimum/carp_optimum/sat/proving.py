@@ -11,6 +11,7 @@ from carp_optimum.sat.lrat_hints import NoHintsError, refutation_with_hints
 from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import Instance, Refusal
 from carp_spec.documents.instances import write_instance
+from carp_spec.inputs.options import require_limits
 from carp_spec.inputs.values import require_instance
 from carp_verify.bound.rules import ContradictionError
 from carp_verify.optimum.clauses import Formula, dimacs
@@ -23,6 +24,7 @@ from carp_verify.optimum.unsolvable import Clauses
 def write_proof(instance: Instance, best: Optimum, directory: Path, limit: float) -> None:
     """Write the proof directory of an answer; raises `TimeOver` if that takes more than `limit` seconds."""
     require_instance(instance)
+    require_limits(limit=limit)
     if not is_provable(best.decided):
         message = "there is a proof directory only for an answer that the search has found"
         raise Refusal("request", "$.proof", is_provable.id, message)

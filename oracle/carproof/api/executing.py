@@ -7,7 +7,7 @@ from carp_spec import Instance, Refusal, RobotId, Solution
 from carp_spec.execution.traces import Trace
 from carp_spec.requests import require_robot, sound_solution
 from carp_spec.rule import is_between
-from carp_spec.shapes import require_shape
+from carp_spec.shapes import require_each
 from carp_verify.release.rules import Grant
 from carproof.execution.delays import Delay
 from carproof.execution.releasing import MOST_STATES, GrantsVerdict, Limit, Released, Releasing
@@ -26,6 +26,7 @@ def execute(instance: Instance, solution: Solution, driver: Driver, delays: Sequ
     if driver not in DRIVERS:
         message = f"there is no driver {driver!r}; the drivers are {', '.join(DRIVERS)}"
         raise Refusal("option", "$.driver", delays_are_right.id, message)
+    require_each(delays, Delay, "$.delays")
     if not delays_are_right(sound, delays):
         message = "each delay must name a planned robot, the position of a visit, and ticks above 0"
         raise Refusal("option", "$.delays", delays_are_right.id, message)
@@ -68,7 +69,7 @@ def check_grants(
     given. Raises `Refusal` as `release` does, and for grants of other than the next resources of plans.
     """
     limit = _limit(states, seconds)
-    require_shape(tuple(grants), tuple[Grant, ...], "$.grants")
+    require_each(grants, Grant, "$.grants")
     return Releasing(instance, solution, trace).check(grants, limit)
 
 

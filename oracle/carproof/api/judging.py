@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from time import perf_counter
+from typing import cast
 
 from carp_spec import Instance, Refusal, Solution, Verdict, judge, total_cost
 from carp_spec.check import MOST_LISTED
@@ -9,7 +10,7 @@ from carp_spec.execution.execution_rules import trace_violations
 from carp_spec.execution.traces import Trace
 from carp_spec.requests import require_trace, sound_solution
 from carp_verify.footprint.apart import footprint_violations
-from carp_verify.footprint.rules import Footprint, cells_have_a_step
+from carp_verify.footprint.rules import Footprint, cells_have_a_step, vehicle_has_a_size
 from carproof.engines import engine_named
 from carproof.judging.audit import Audit, audit_in_order, audit_in_some_order
 from carproof.requests import deadline
@@ -29,6 +30,10 @@ def check(
     rule. Raises `Refusal` for a malformed instance or solution, and with a footprint for resources without positions
     and, without `cells`, for those that are neither points nor lanes.
     """
+    given = cast("object", footprint)
+    if not (given is None or isinstance(given, Footprint)):
+        message = f"it must be a value of Footprint, not {given!r}"
+        raise Refusal("option", "$.footprint", vehicle_has_a_size.id, message)
     verdict = judge(instance, solution, most)
     for fault in cells_have_a_step(cells, footprint):
         raise Refusal("option", fault.path, fault.rule, fault.message)

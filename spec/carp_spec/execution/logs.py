@@ -6,6 +6,7 @@ from itertools import islice
 
 from carp_spec.check import MOST_LISTED
 from carp_spec.execution.traces import Trace
+from carp_spec.inputs.options import require_limits
 from carp_spec.inputs.values import require_instance
 from carp_spec.joint_rules import JOINT_RULES, solution_covers_robots
 from carp_spec.model import Instance, Plan, ResourceId, RobotId, Solution
@@ -54,6 +55,7 @@ def judge_log(instance: Instance, log: Trace, most: int | None = MOST_LISTED) ->
     """
     require_instance(instance)
     require_shape(log, Trace)
+    require_limits(most=most)
     _require_past(log)
     named = {plan.robot for plan in log.plans}
     absent = tuple(robot for robot in instance.robot if robot not in named)

@@ -1,7 +1,8 @@
 """The options of planners, and limits of searches."""
 
 from dataclasses import asdict
-from math import inf
+from reprlib import repr as shown
+from sys import float_info, maxsize
 from typing import Any, cast, get_args
 
 from carp_spec.planners import LARGEST_SEED, PathKind, Planner
@@ -56,12 +57,15 @@ def require_polish_options(iterations: object, seconds: object, seed: object) ->
 
 
 def require_limits(**limits: object) -> None:
-    """Raise `Refusal` unless each limit of a search, by its name, is a number of at least 0, or `None`.
+    """Raise `Refusal` unless each limit, by its name, is a number of at least 0, or `None`; a `limit` is always given.
 
-    Steps are whole numbers. With a limit of 0, which the protocol refuses, a search ends at once.
+    Steps and the most violations are whole numbers. With a limit of 0, which the protocol refuses, a search ends at
+    once.
     """
     for name, limit in limits.items():
-        kinds = (int,) if name == "steps" else (int, float)
-        if not (limit is None or (type(limit) in kinds and 0 <= cast("float", limit) < inf)):
-            right = "whole number" if name == "steps" else "number"
-            raise Refusal("request", f"$.{name}", "request/limit", f"it must be a {right} of at least 0, not {limit!r}")
+        is_whole = name in ("steps", "most")
+        kinds, largest = ((int,), maxsize) if is_whole else ((int, float), float_info.max)
+        is_free = limit is None and name != "limit"
+        if not (is_free or (type(limit) in kinds and 0 <= cast("float", limit) <= largest)):
+            message = f"it must be a {'whole ' if is_whole else ''}number of at least 0, not {shown(limit)}"
+            raise Refusal("request", f"$.{name}", "request/limit", message)

@@ -14,7 +14,7 @@ from weakref import ref
 from carp_spec.instance_rules import instance_faults
 from carp_spec.model import SEEN, Instance, Plan, ResourceGraph, Solution
 from carp_spec.refusal import Refusal
-from carp_spec.shapes import require_shape
+from carp_spec.shapes import require_each, require_shape
 
 NOTHING = Solution((), ())
 NOWHERE = ResourceGraph((), ())
@@ -38,8 +38,9 @@ def require_instance(instance: Instance) -> None:
 def require_solution(instance: Instance, solution: Solution) -> None:
     """Raise `Refusal` with the first fault of the instance, or if the solution is malformed."""
     require_instance(instance)
-    if not any(each() is solution for each, _ in (*instance.seen,)):
-        is_known = isinstance(cast("object", solution), Solution) and has_sound_plans(instance, solution.plans)
+    found = cast("object", solution)  # what is no solution is as little known as one that is gone
+    if found is None or not any(each() is found for each, _ in (*instance.seen,)):
+        is_known = isinstance(found, Solution) and has_sound_plans(instance, solution.plans)
         require_shape(replace(solution, plans=()) if is_known else solution, Solution)
         remember(instance, ref(solution))
 
@@ -91,8 +92,8 @@ def remember(instance: Instance, seen: Callable[[], Solution | None], *, is_soun
 
 def require_update(before: Sequence[Plan], after: Sequence[Plan], now: int) -> None:
     """Raise `Refusal` if plans made again at a tick, or those before, are malformed."""
-    require_shape(tuple(before), tuple[Plan, ...], "$.before")
-    require_shape(tuple(after), tuple[Plan, ...], "$.after")
+    require_each(before, Plan, "$.before")
+    require_each(after, Plan, "$.after")
     require_shape(now, int, "$.now")
 
 
