@@ -14,7 +14,7 @@ TASKS = (3, 3, 11, 0, 8, 2, 10, 4, 7, 1) * 9
 
 def test_tasks_are_done_one_after_the_other_in_the_order_of_the_list() -> None:
     for planner in PLANNERS.values():
-        found = do_tasks(GRID, (0, 8), TASKS, 40, planner)
+        found = do_tasks(GRID, (0, 8), TASKS, 40, *planner)
         instance, solution = found.fleet.instance, found.fleet.solution
         assert judge(instance, solution).valid
         assert len(found.tasks) > 6
@@ -28,4 +28,4 @@ def test_tasks_are_done_one_after_the_other_in_the_order_of_the_list() -> None:
 
 
 def test_a_robot_that_is_in_the_cell_of_its_task_has_done_it_a_tick_later() -> None:
-    assert do_tasks(GRID, (0,), (0, 3), 1, PLANNERS["CARP"]).tasks == ((0, 1, 0),)
+    assert do_tasks(GRID, (0,), (0, 3), 1, *PLANNERS["CARP"]).tasks == ((0, 1, 0),)

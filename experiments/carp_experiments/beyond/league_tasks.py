@@ -2,9 +2,9 @@
 
 Robots drive on in their heading (F), turn (R, C) or wait (W), an action a tick. Each has one task at a time, a cell to
 be in; who is there gets the next of the list at that tick. A robot is planned when it gets a task, as `carproof.assign`
-does, to the cell in the heading in which it is there first if it is alone.
+does, to the cell in the heading in which it is there first if it is alone. Some planners then polish all plans.
 
-    python -m carp_experiments.beyond.league_tasks MAP AGENTS TASKS TICKS
+    python -m carp_experiments.beyond.league_tasks MAP AGENTS TASKS TICKS [PLANNER...]
 
 The files are those of a round in MAPF-Competition/Benchmark-Archive. Printed are a planner's name, the tasks done by
 the tick, how often no plan was found, and processor seconds.
@@ -23,7 +23,13 @@ from carproof.formats.movingai import GridMap, movingai_instance, read_map
 from carproof.generate.grid import cell_id
 from carproof.generate.headings import parts_of, with_headings
 
-PLANNERS = {"CARP": Neighbourhood(m=1), "Proposed_4": Neighbourhood(m=4)}
+ROUNDS = 10
+PLANNERS = {
+    "CARP": (Neighbourhood(m=1), 0),
+    "CARP, polished": (Neighbourhood(m=1), ROUNDS),
+    "Proposed_4": (Neighbourhood(m=4), 0),
+}
+"""The planner of a new task, and how many rounds of polish follow it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +41,9 @@ class Done:
     fleet: Fleet
 
 
-def do_tasks(grid: GridMap, starts: Sequence[int], tasks: Sequence[int], ticks: int, planner: Neighbourhood) -> Done:
+def do_tasks(
+    grid: GridMap, starts: Sequence[int], tasks: Sequence[int], ticks: int, planner: Neighbourhood, rounds: int = 0
+) -> Done:
     """Give tasks to robots until the tick; cells are numbered row by row."""
     names = [cell_id(cell % grid.width, cell // grid.width) for cell in range(grid.width * grid.height)]
     graph = with_headings(movingai_instance(grid, (), "park")).graph
@@ -61,7 +69,8 @@ def do_tasks(grid: GridMap, starts: Sequence[int], tasks: Sequence[int], ticks: 
             missed += bool(change.unplanned)
             free_at[robot] = tick + 1
             heappush(queue, (tick + 1, robot))
-        for plan in change.plans:
+        polished = fleet.polish(iterations=rounds).plans if rounds and change.plans else ()
+        for plan in (*change.plans, *polished):
             mover, last = int(plan.robot), plan.visits[-1]
             here[mover], free_at[mover] = str(last.resource), last.enter
             heappush(queue, (last.enter, mover))
@@ -83,14 +92,13 @@ def _numbers(file: str) -> list[int]:
 
 
 if __name__ == "__main__":
-    map_file, agents, tasks_file, until = sys.argv[1:]
-    for name, planner in PLANNERS.items():
+    map_file, agents, tasks_file, until, *names = sys.argv[1:]
+    given = read_map(Path(map_file).read_bytes(), map_file), _numbers(agents), _numbers(tasks_file), int(until)
+    for name in names or PLANNERS:
         began = process_time()
-        found = do_tasks(
-            read_map(Path(map_file).read_bytes(), map_file), _numbers(agents), _numbers(tasks_file), int(until), planner
-        )
+        found = do_tasks(*given, *PLANNERS[name])
         seconds = process_time() - began
         verdict = judge(found.fleet.instance, found.fleet.solution)
         if not verdict.valid:
             raise AssertionError(verdict.violations[0])
-        print(name, len(found.tasks), found.missed, f"{seconds:.1f}")  # noqa: T201 - the table
+        print(name, len(found.tasks), found.missed, f"{seconds:.1f}", flush=True)  # noqa: T201 - the table
