@@ -1,15 +1,13 @@
 """Bounds with robots that are seen at a tick: at most the optimum, and decided alike in Python and by the kernel."""
 
-import json
-import subprocess
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import cache
 from itertools import chain, combinations
-from typing import Any
 
 import msgspec
+import pytest
 from tests.verify.bound_examples import completed
-from tests.verify.kernel_program import program
+from tests.verify.kernel_program import check_bound, served
 from tests.verify.tiny import case
 
 from carp_optimum.bound import lower_bound
@@ -17,7 +15,6 @@ from carp_optimum.sat.proving import refutation
 from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import Instance, Robot, RobotId
 from carp_spec.documents.bounds import BoundDocument, DeadlinesDocument, Sight
-from carp_spec.documents.instances import instance_document
 from carp_spec.permutations import shuffle
 from carp_verify.bound.cuts import formula_of_deadlines
 from carp_verify.bound.rules import LARGEST_FORMULA
@@ -25,6 +22,8 @@ from carp_verify.bound.verify import verify_bound
 from carp_verify.optimum.encoding import Encoding
 from carp_verify.optimum.joint_search import least_total_cost
 from carproof.testing.random_instances import Draw
+
+_kernel = pytest.fixture(scope="module")(served)
 
 CASES = 300
 SCALE = 4
@@ -99,28 +98,19 @@ def test_a_bound_with_robots_that_are_seen_is_verified_and_at_most_the_optimum()
     assert tight > 4
 
 
-def verdicts(questions: Sequence[tuple[Instance, object]]) -> list[Any]:
-    """The kernel's answers."""
-    requests = [
-        {"op": "verify-bound", "instance": instance_document(instance), "certificate": certificate}
-        for instance, certificate in questions
-    ]
-    text = b"".join(msgspec.json.encode(each) + b"\n" for each in requests)
-    done = subprocess.run([program(), "serve"], input=text, stdout=subprocess.PIPE, check=False)
-    return [json.loads(line) for line in done.stdout.splitlines()]
-
-
 def test_robots_are_seen_more_than_once() -> None:
     priced = [deadlines for _, certificate in found() for deadlines in certificate.deadlines]
     assert sum(len(each.robots) > len(set(each.robots)) for each in priced) > 20
 
 
+@pytest.mark.usefixtures("_kernel")
 def test_the_kernel_accepts_bounds_with_robots_that_are_seen() -> None:
     bounds = [certificate.bound for _, certificate in found()]
-    assert [answer.get("bound") for answer in verdicts(found())] == bounds
+    assert [check_bound(*each).get("bound") for each in found()] == bounds
     assert len(bounds) > 20
 
 
+@pytest.mark.usefixtures("_kernel")
 def test_the_kernel_refuses_claims_that_are_a_part_of_a_tick_too_high() -> None:
     forged = []
     for instance, certificate in found():
@@ -128,4 +118,4 @@ def test_the_kernel_refuses_claims_that_are_a_part_of_a_tick_too_high() -> None:
             robots = list(certificate.robots)
             robots[position] = (name, (least or 0) + 1)
             forged.append((instance, msgspec.structs.replace(certificate, robots=tuple(robots))))
-    assert {answer.get("rule") for answer in verdicts(forged)} == {"bound/robots"}
+    assert {check_bound(*each).get("rule") for each in forged} == {"bound/robots"}

@@ -5,13 +5,12 @@ import subprocess
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import msgspec
 import pytest
 from tests.verify.bound_examples import crossing as head_on
 from tests.verify.bound_examples import cut_of, deadline_certificate
-from tests.verify.kernel_program import program
+from tests.verify.kernel_program import Json, check_bound, program, run, served
 from tests.verify.test_proof import crossing, drop_last_line, prove
 from tests.verify.test_unsolvable import BORN_TOGETHER
 from tests.verify.tiny import case
@@ -21,7 +20,6 @@ from carp_optimum.sat.proving import refutation, write_proof
 from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, DeadlinesDocument
-from carp_spec.documents.decoding import write
 from carp_spec.documents.instances import digest, read_instance, write_instance
 from carp_spec.permutations import shuffle
 from carp_verify.bound.cuts import formula_of_deadlines, group_of
@@ -34,15 +32,16 @@ from carp_verify.optimum.proof import PROOF_FORMAT
 from carp_verify.optimum.refutation import read_steps
 from carp_verify.optimum.unsolvable import Clauses
 
+_kernel = pytest.fixture(scope="module")(served)
+
 SECONDS = 60
 CASES = 400
 BLOCK = 100
 
 
-def verdict(folder: Path) -> Any:  # noqa: ANN401 - a document of any shape
+def verdict(folder: Path) -> Json:
     """The kernel's answer about a proof directory."""
-    done = subprocess.run([program(), "verify-proof", folder], capture_output=True, text=True, check=False)
-    return json.loads(done.stdout)
+    return run("verify-proof", folder)[1]
 
 
 def kernel_formula(folder: Path) -> str:
@@ -254,21 +253,9 @@ def test_a_large_duration_or_capacity_is_no_obstacle(after_goal: AfterGoal, tmp_
     assert verdict(tmp_path) == {"kernel": "1", "verdict": "accepted", "bound": least}
 
 
-def bound_verdict(instance: Instance, document: BoundDocument, folder: Path) -> Any:  # noqa: ANN401 - as above
-    """The kernel's answer about a bound."""
-    (folder / "instance.json").write_bytes(write_instance(instance))
-    (folder / "bound.json").write_bytes(write(document))
-    return decided(folder)
-
-
-def decided(folder: Path) -> Any:  # noqa: ANN401 - as above
-    """The kernel's answer about the bound on file."""
-    command = f"{program()} verify-bound {folder}/instance.json {folder}/bound.json".split()
-    return json.loads(subprocess.run(command, capture_output=True, text=True, check=False).stdout)
-
-
+@pytest.mark.usefixtures("_kernel")
 @pytest.mark.parametrize("first", range(0, 120, 40))
-def test_cuts_of_some_robots_in_any_order_are_accepted(tmp_path: Path, first: int) -> None:
+def test_cuts_of_some_robots_in_any_order_are_accepted(first: int) -> None:
     accepted = 0
     for number in range(first, first + 40):
         instance, draw = case(number)
@@ -281,7 +268,7 @@ def test_cuts_of_some_robots_in_any_order_are_accepted(tmp_path: Path, first: in
             cut = cut_of(instance, chosen, least)
             document = BoundDocument(BOUND_FORMAT, digest(instance), bound, 1, 0, (), (), (cut,), claims)
             assert verify_bound(instance, document) == bound
-            assert bound_verdict(instance, document, tmp_path) == {"kernel": "1", "verdict": "accepted", "bound": bound}
+            assert check_bound(instance, document) == {"kernel": "1", "verdict": "accepted", "bound": bound}
             accepted += 1
     assert accepted > 10
 
@@ -294,8 +281,9 @@ def late_bound(instance: Instance, deadlines: DeadlinesDocument) -> BoundDocumen
     return BoundDocument(BOUND_FORMAT, digest(instance), bound, 1, 0, (), (), (), claims, (deadlines,))
 
 
+@pytest.mark.usefixtures("_kernel")
 @pytest.mark.parametrize("first", range(0, 120, 40))
-def test_deadlines_of_some_robots_in_any_order_are_accepted_if_refuted(tmp_path: Path, first: int) -> None:
+def test_deadlines_of_some_robots_in_any_order_are_accepted_if_refuted(first: int) -> None:
     decided = {"accepted": 0, "refused": 0}
     for number in range(first, first + 40):
         instance, draw = case(number)
@@ -314,7 +302,7 @@ def test_deadlines_of_some_robots_in_any_order_are_accepted_if_refuted(tmp_path:
                 if not is_kept:
                     refuted = refutation(formula, Deadline(SECONDS))
                 document = late_bound(instance, msgspec.structs.replace(unproved, refutation=refuted))
-                answer = bound_verdict(instance, document, tmp_path)
+                answer = check_bound(instance, document)
                 assert answer["verdict"] == ("refused" if is_kept else "accepted")
                 decided[answer["verdict"]] += 1
                 if is_kept:
@@ -324,11 +312,12 @@ def test_deadlines_of_some_robots_in_any_order_are_accepted_if_refuted(tmp_path:
     assert min(decided.values()) > 5, decided
 
 
-def test_a_deadline_too_late_for_a_formula_is_refused(tmp_path: Path) -> None:
+@pytest.mark.usefixtures("_kernel")
+def test_a_deadline_too_late_for_a_formula_is_refused() -> None:
     (deadlines,) = deadline_certificate().deadlines
     for tick in (10**7, 10**40):
         document = late_bound(head_on(), msgspec.structs.replace(deadlines, ticks=(2, tick), price=1))
-        answer = bound_verdict(head_on(), document, tmp_path)
+        answer = check_bound(head_on(), document)
         assert (answer["verdict"], answer["rule"]) == ("refused", "bound/size")
 
 
