@@ -11,7 +11,7 @@ from carp_spec import Instance
 from carp_verify.optimum.proof import ProofError, Verified, verify_proof
 
 FAR = 10**99
-STRANGERS: tuple[object, ...] = ("moon", -1, True, 1.5, None, [])
+STRANGERS: tuple[object, ...] = ("moon", -1, 0, True, False, 1.5, None, [], {})
 
 
 def changed(document: Any) -> Iterator[Any]:  # noqa: ANN401 - any JSON value
@@ -38,7 +38,8 @@ def replaced(value: Any) -> Iterator[Any]:  # noqa: ANN401 - any JSON value
     if isinstance(value, int) and not isinstance(value, bool):
         numbers = (0, value + 1, value - 1, -value, 2 * value, value // 2, value + 2**16, 10**9, FAR, -FAR)
         yield from (number for number in dict.fromkeys(numbers) if number != value)
-    yield from (stranger for stranger in STRANGERS if stranger != value)
+        yield from (float(value), str(value))
+    yield from (stranger for stranger in STRANGERS if stranger != value or type(stranger) is not type(value))
     if isinstance(value, str):
         yield value + " "
 
