@@ -337,6 +337,11 @@ def test_a_malformed_limit_is_refused_like_its_op(search: Callable[[], object], 
     assert refused(search)[1:] == ("request/limit", path)
 
 
+def test_a_search_may_take_any_time_that_a_float_holds() -> None:
+    assert carproof.optimum(RIGHT, 1e308).decided
+    assert carproof.bound(RIGHT, seconds=1e308, steps=1).bound > 0
+
+
 NO_DELAY: Any = [("r", 0, 1)]
 NO_TICKS: Any = [Delay("r", 0, True)]
 NO_FOOTPRINT: Any = (900, 600)

@@ -9,6 +9,7 @@ from time import monotonic_ns
 from carp_verify.optimum.clauses import Formula, Literal
 
 NANOSECONDS = 1_000_000_000
+LONGEST = 10**9  # more seconds than anybody waits
 CONFLICTS_BETWEEN_LOOKS = 300
 PROPAGATIONS_OF_CONFLICT = 650
 """How many propagations take as long as a conflict: about the same on grids of 6 x 6, 8 x 8 and 20 x 20."""
@@ -27,7 +28,7 @@ class Deadline:
         """Begin now; `clock` gives nanoseconds."""
         self._clock = clock
         self._start = clock()
-        self._end = self._start + int(seconds * NANOSECONDS)
+        self._end = self._start + int(min(seconds, LONGEST) * NANOSECONDS)
 
     def check(self, ahead: int = 0) -> None:
         """Raise `TimeOver` if it has passed, or will have in that many nanoseconds."""
