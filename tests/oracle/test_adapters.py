@@ -372,6 +372,14 @@ def test_a_table_is_read_and_says_which_stops_are_served() -> None:
         write_foreign_solution(ids, Solution.of(ids, [Plan("r", (Visit(1, 0, None),))]), "csv")
 
 
+def test_a_table_keeps_blanks_of_ids() -> None:
+    blank = Instance(ResourceGraph((Resource(" a"), Resource("b")), ((" a", "b"),)), (Robot("r ", "b", " a"),), "park")
+    solution = Solution.of(blank, [Plan("r ", (Visit("b", 0, 1), Visit(" a", 1, None)))])
+    table = write_foreign_solution(blank, solution, "csv")
+    assert read_foreign_solution(table, blank) == solution
+    assert read_foreign_solution(table.replace(b"b,0", b" b ,0"), blank) == solution
+
+
 @given(planned_instances(Sizes(groups=2, stops=2, service=2)))
 @settings(max_examples=draws(300))
 def test_a_table_holds_the_plans_of_every_instance_whose_ids_print_differently(planned: PlannedInstance) -> None:

@@ -7,6 +7,7 @@ may be added.
 
 import csv
 import re
+from collections.abc import Mapping
 from io import StringIO
 
 from carp_spec import Instance, Plan, Refusal, ResourceId, RobotId, Solution, Visit
@@ -40,15 +41,21 @@ def read(text: str, instance: Instance, file: str) -> Solution:
     visits: dict[RobotId, list[Visit]] = {}
     for number, row in enumerate(rows, start=2):
         require_bounded(number, file)
-        robot, resource, enter, leave = ((row[name] or "").strip() for name in COLUMNS)
-        if not robot or not resource or not _TICK.fullmatch(enter) or not (leave == "" or _TICK.fullmatch(leave)):
+        enter, leave = ((row[name] or "").strip() for name in ("enter", "leave"))
+        robot, resource = _named(row["robot"] or "", robots), _named(row["resource"] or "", resources)
+        if "" in (robot, resource) or not _TICK.fullmatch(enter) or not (leave == "" or _TICK.fullmatch(leave)):
             message = (
                 "the row must have a robot, a resource, and whole numbers of ticks, the last of which may be left out"
             )
             raise Refusal("document", f"{file}:{number}", RIGHT_TABLE.id, message)
-        visit = Visit(resources.get(resource, resource), int(enter), int(leave) if leave else None)
-        visits.setdefault(robots.get(robot, robot), []).append(visit)
+        visit = Visit(resource, int(enter), int(leave) if leave else None)
+        visits.setdefault(robot, []).append(visit)
     return Solution.of(instance, (Plan(robot, tuple(each)) for robot, each in visits.items()))
+
+
+def _named(text: str, ids: Mapping[str, RobotId]) -> RobotId:
+    """The id that prints like the text, or else like the text without blanks around it."""
+    return ids.get(text, ids.get(text.strip(), text.strip()))
 
 
 def write(instance: Instance, solution: Solution) -> str:
