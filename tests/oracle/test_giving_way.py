@@ -10,7 +10,7 @@ from tests.oracle.running import Run, save, solution, town
 from tests.profiles import draws
 
 import carp_reference
-from carp_spec import check_update, judge
+from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit, check_update, judge
 from carproof.engines import engine_named
 from carproof.execution.giving_way import give_way, history
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
@@ -77,3 +77,25 @@ def test_an_update_is_lawful_keeps_histories_and_is_first_where_it_says_so(
     assert found.is_first == (found.arrival == found.least)
     changed = {plan.robot for plan in found.solution.plans if plan != before[plan.robot]}
     assert changed - {robot} == set(found.extra)
+
+
+def test_robots_that_find_no_plan_in_turn_end_the_search() -> None:
+    cells = (Resource("a"), Resource("b", 2), Resource("c", 3), Resource("d", 2, 2))
+    robots = (
+        Robot("q", "b", "d"),
+        Robot("s", "b", "b", pace=2),
+        Robot("t", "a", "c", 2),
+        Robot("u", "a", "d", 1),
+        Robot("person", "c", "b"),
+    )
+    instance = Instance(ResourceGraph(cells, (("a", "b"), ("c", "b"), ("b", "d"))), robots, "park")
+    plans = (
+        Plan("q", (Visit("b", 0, 1), Visit("d", 1, None))),
+        Plan("s", (Visit("b", 0, None),)),
+        Plan("t", (Visit("a", 2, 3), Visit("b", 3, 4), Visit("c", 4, None))),
+        Plan("u", (Visit("a", 1, 2), Visit("b", 2, 3), Visit("d", 3, None))),
+        Plan("person", (Visit("c", 0, 5), Visit("b", 5, None))),
+    )
+    found = give_way(instance, Solution.of(instance, plans), "person", 2, REFERENCE)
+    assert found.solution is None
+    assert found.stuck

@@ -145,7 +145,9 @@ def plan_around(
     """
     before = {plan.robot: plan for plan in others}
     moving = colliding(instance, [first], others)
+    tried: list[list[RobotId]] = []
     while True:
+        tried.append(moving)
         plans = {robot: plan for robot, plan in before.items() if robot not in moving}
         waiting = [history(instance, before[robot], now) for robot in moving]
         failed: RobotId | None = None
@@ -166,7 +168,7 @@ def plan_around(
             return failed
         in_way = colliding(instance, [first, wished], [plan for robot, plan in before.items() if robot != failed])
         wider = list(dict.fromkeys([failed, *moving, *(robot for robot in in_way if robot not in kept)]))
-        if wider == moving:
+        if wider in tried:
             return failed
         moving = wider
 
