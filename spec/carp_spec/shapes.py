@@ -20,7 +20,7 @@ PATHS = {
 }
 """The fields that have another path than their name."""
 ENDS = (".source", ".target")
-WORDS = {str: "a string", int: "a whole number", bool: "true or false", NoneType: "None"}
+WORDS = {str: "a string", bytes: "bytes", int: "a whole number", bool: "true or false", NoneType: "None"}
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,6 +45,8 @@ from carproof.formats import named_as, read_foreign_solution, write_foreign_solu
 from carproof.formats.plans.vda5050 import write_orders
 from carproof.generate import Fleet, Grid, Range, Traits, Warehouse, grid_instance, warehouse_instance
 
+UNLOOKED_AT = ("conforms", "stops_served")
+"""The functions that find a fault in any value, and whose values the law has looked at before."""
 RIGHT = Instance(
     ResourceGraph((Resource("a"), Resource("b", 2), Resource("c", x=1, y=2)), (("a", "b"), ("b", "c"))),
     (Robot("r", "a", "c"), Robot("s", "a", "b", release=2)),
@@ -238,6 +240,16 @@ def test_every_public_function_of_an_instance_or_a_solution_is_among_these() -> 
 
 def parameters(value: object) -> set[str]:
     return {*signature(value).parameters} if isfunction(value) else set()
+
+
+@pytest.mark.parametrize("name", [name for name in carproof.__all__ if name not in UNLOOKED_AT])
+@pytest.mark.parametrize("wrong", ["{}", None, 5])
+def test_values_of_other_classes_are_refused(name: str, wrong: object) -> None:
+    function = getattr(carproof, name)
+    given = signature(function).parameters.values() if isfunction(function) else ()
+    required = {each.name: wrong for each in given if each.default is each.empty}
+    if required:
+        refused(lambda: function(**required))
 
 
 @pytest.mark.parametrize("function", OF_SOLUTIONS)

@@ -7,7 +7,7 @@ from carp_spec.documents.bounds import BoundDocument
 from carp_spec.documents.decoding import decode, write
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.documents.verdicts import VERDICT_FORMAT, VerdictDocument, ViolationDocument
-from carp_spec.shapes import SHAPE
+from carp_spec.shapes import SHAPE, require_shape
 
 
 def read_verdict(data: bytes) -> Verdict:
@@ -29,9 +29,11 @@ def _violation(document: ViolationDocument) -> Violation:
 
 def write_bound(certificate: BoundDocument) -> bytes:
     """Write the certificate of a lower bound."""
+    require_shape(certificate, BoundDocument)
     return write(certificate)
 
 
 def write_query_certificate(certificate: QueryCertificateDocument) -> bytes:
     """Write the certificate of a query."""
+    require_shape(certificate, QueryCertificateDocument)
     return write(certificate)

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from carp_spec import AfterGoal, Instance, Refusal, Robot
+from carp_spec.shapes import require_shape
 from carproof.generate.grid import cell_edges, cell_graph, cell_id
 from carproof.generate.options import MOST_RESOURCES, Traits, size_is_bounded
 from carproof.input_rules import Code
@@ -123,6 +124,8 @@ def read_movingai(map: bytes, scenario: bytes, agents: int | None = None, after_
 
     Raises `Refusal` with the file and the line that is wrong.
     """
+    require_shape(map, bytes, "map")
+    require_shape(scenario, bytes, "scenario")
     grid = read_map(map)
     return movingai_instance(grid, read_scenario(scenario, grid, agents), after_goal)
 

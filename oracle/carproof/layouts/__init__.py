@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from carp_spec import Instance, Refusal
+from carp_spec.shapes import require_shape
 from carproof.input_rules import Code
 from carproof.layouts import lif, nav2, open_rmf, opentcs, roadmaps
 from carproof.layouts.layout import Layout, Note, Reader
@@ -49,6 +50,7 @@ def import_layout(
 
 def read_layout(data: bytes, file: str = "layout", format: str | None = None) -> tuple[str, Layout]:
     """Read a layout; returns the name of its format with it."""
+    require_shape(data, bytes, file)
     tree = read_tree(data, file)
     if format is None:
         looks = [name for name, each in READERS.items() if each.looks_like(tree)]

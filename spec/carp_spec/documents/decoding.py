@@ -16,7 +16,7 @@ import msgspec
 
 from carp_spec.refusal import Refusal
 from carp_spec.rule import DESIGN, rule
-from carp_spec.shapes import SHAPE
+from carp_spec.shapes import SHAPE, require_shape
 
 MOST_DIGITS: Final = 100
 TOO_LONG: Final = b"0" * (MOST_DIGITS + 1)
@@ -173,6 +173,7 @@ def decode_quickly(data: bytes, kind: type[Q], *, has_defaults: bool = False) ->
     other than `UNSET`, absent members would be written, so it is read once more, as any JSON. msgspec also takes longer
     numbers than `decode`.
     """
+    require_shape(data, bytes)
     if ESCAPE in data or TOO_LONG in data.translate(EACH_DIGIT_AS_0):
         return None
     try:

@@ -7,6 +7,7 @@ import msgspec
 from carp_spec.check import Verdict
 from carp_spec.documents.decoding import write
 from carp_spec.model import ResourceId, RobotId
+from carp_spec.shapes import require_shape
 
 VERDICT_FORMAT: Final = "carproof-verdict/1"
 
@@ -45,4 +46,5 @@ def verdict_document(verdict: Verdict) -> VerdictDocument:
 
 def write_verdict(verdict: Verdict) -> bytes:
     """Write a verdict document."""
+    require_shape(verdict, Verdict)
     return write(verdict_document(verdict))

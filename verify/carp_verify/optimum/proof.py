@@ -25,6 +25,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
+from reprlib import repr as shown
 from typing import Final, Literal
 
 import msgspec
@@ -33,6 +34,7 @@ from carp_spec import Instance, Plan, Refusal, Solution, judge
 from carp_spec.documents.decoding import decode, has_format
 from carp_spec.documents.instances import read_instance, write_instance
 from carp_spec.model import ResourceId, RobotId
+from carp_spec.shapes import SHAPE
 from carp_verify.optimum.clauses import dimacs
 from carp_verify.optimum.encoding import Encoding, Evidence, beat_formula, reach_formula
 from carp_verify.optimum.refutation import NotRefutedError, require_refutation
@@ -148,6 +150,8 @@ def verify_proof(proof: Path | ProofFiles, instance: Instance | None = None) -> 
 
     Raises `ProofError` where it does not prove its claim, and `Refusal` if an instance is malformed.
     """
+    if not isinstance(proof, Path | ProofFiles):
+        raise Refusal("document", "$", SHAPE, f"it must be the path of a proof directory, not {shown(proof)}")
     asked = None if instance is None else write_instance(instance)
     read = proof if isinstance(proof, ProofFiles) else read_proof(proof)
     proved = read_instance(read.contents["instance.json"])
