@@ -102,8 +102,8 @@ gap-figures: install
 	$(BIN)/python -m carp_experiments.measuring.gap_table
 
 # A run of the paper in full, `make paper-quality`; it continues where its store ends, and writes tables and figures to `report`.
-# Seconds of processor time on a machine with 2 cores: quality 11,900; time 200; reuse 160; gap 550; related 420; polish, for 420 of
-# its 2,100 cases, 5,990; conventions, for 12 of 200, 1,680; nearest, for 84 of 200, 2,280; remaining, for 84 of 200, 790; neighbours 180.
+# Seconds of processor time on a machine with 2 cores: quality 11,900; time 200; reuse 160; gap 550; related 420; polish, for 861 of
+# its 2,100 cases, 18,800; conventions, for 12 of 200, 1,680; nearest, for 84 of 200, 2,280; remaining, for 84 of 200, 790; neighbours 180.
 PAPER := paper-quality paper-time paper-reuse paper-gap paper-related paper-polish paper-conventions paper-nearest \
     paper-remaining paper-neighbours
 .PHONY: $(PAPER) paper-recomputed
