@@ -111,7 +111,7 @@ $(PAPER): paper-%: install
 	nice $(BIN)/carproof experiment $* --store $*.sqlite --workers 2 --report report
 
 # Compute 50 random cases of each stored run again with the reference planner; continues where it stopped. Seconds of processor time:
-# gap 1,400; reuse 250; related 1,200; time 420; quality 730; neighbours 600; nearest 170; polish 590.
+# gap 1,400; reuse 250; related 1,200; time 420; quality 730; neighbours 600; nearest 170; polish 1,040.
 paper-recomputed: install
 	for name in gap reuse related time quality neighbours nearest polish; do \
 	    xz -dkc experiments/results/$$name.sqlite.xz > $$name.stored && \

@@ -24,6 +24,8 @@ from carproof.generate.grid import cell_id
 from carproof.generate.headings import parts_of, with_headings
 
 ROUNDS = 10
+LONGEST_PAUSE = 16
+"""Ticks after which a robot without a plan asks again at most; at first it does after one, and then twice as many."""
 PLANNERS = {
     "CARP": (Neighbourhood(m=1), 0),
     "CARP, polished": (Neighbourhood(m=1), ROUNDS),
@@ -53,6 +55,7 @@ def do_tasks(
     waiting: Iterator[int] = iter(tasks)
     task: dict[int, int] = {}
     free_at = dict.fromkeys(here, 0)
+    pause = dict.fromkeys(here, 1)
     queue = [(0, robot) for robot in here]
     done, missed = [], 0
     while queue:
@@ -67,8 +70,9 @@ def do_tasks(
         change = fleet.advance(tick) if goal == here[robot] else fleet.assign(robot, [Stop(goal)], tick)
         if change.unplanned or goal == here[robot]:
             missed += bool(change.unplanned)
-            free_at[robot] = tick + 1
-            heappush(queue, (tick + 1, robot))
+            free_at[robot] = tick + pause[robot]
+            heappush(queue, (free_at[robot], robot))
+        pause[robot] = min(2 * pause[robot], LONGEST_PAUSE) if change.unplanned else 1
         polished = fleet.polish(iterations=rounds).plans if rounds and change.plans else ()
         for plan in (*change.plans, *polished):
             mover, last = int(plan.robot), plan.visits[-1]
@@ -78,12 +82,26 @@ def do_tasks(
 
 
 def first_reached(graph: ResourceGraph, source: ResourceId, goals: Sequence[str]) -> str:
-    """The one of the goals that a robot alone reaches first from the source, the first of them among equals."""
-    seen, layer = {source}, {source}
-    while layer and layer.isdisjoint(goals):
-        layer = {each for near in layer for each in graph.successors[near]} - seen
-        seen |= layer
-    return next(goal for goal in goals if goal in layer)
+    """The one of the goals, all in one cell, that a robot alone reaches first from the source, by A*."""
+    goal = graph.resource[goals[0]]
+
+    def cells_from(resource: ResourceId) -> int:
+        here = graph.resource[resource]
+        return abs(int(here.x or 0) - int(goal.x or 0)) + abs(int(here.y or 0) - int(goal.y or 0))
+
+    seen: set[ResourceId] = set()
+    queue = [(cells_from(source), 0, str(source))]
+    while queue:
+        _, before, resource = heappop(queue)
+        if resource in goals:
+            return resource
+        if resource not in seen:
+            seen.add(resource)
+            ticks = 1 - before  # the most first among equals
+            for each in graph.successors[resource]:
+                if each not in seen:
+                    heappush(queue, (ticks + cells_from(each), -ticks, str(each)))
+    raise ValueError(f"no way leads from {source} to {goals}")
 
 
 def _numbers(file: str) -> list[int]:
