@@ -148,7 +148,7 @@ def read_proof(directory: Path) -> ProofFiles:
 def verify_proof(proof: Path | ProofFiles, instance: Instance | None = None) -> Verified:
     """Check a proof directory, and that it is about the instance, if one is given.
 
-    Raises `ProofError` where it does not prove its claim, and `Refusal` if an instance is malformed.
+    Raises `ProofError` where it does not prove its claim, and `Refusal` for a malformed instance or no path.
     """
     if not isinstance(proof, Path | ProofFiles):
         raise Refusal("document", "$", SHAPE, f"it must be the path of a proof directory, not {shown(proof)}")
