@@ -197,8 +197,10 @@ def benchmark(  # noqa: PLR0913, PLR0917 - one parameter for each option
 
     Exit codes: 0 done, 1 a total below a verified bound, 2 bad input.
     """
-    cases = benchmark_cases(bounds, maps, seconds, bound_seconds, {"LaCAM3": lacam3, "LNS2": lns2}, plans)
-    identity = f"benchmark of {', '.join(map(str, seconds))} s, bounds {bound_seconds} s"
+    others = {name: program for name, program in {"LaCAM3": lacam3, "LNS2": lns2}.items() if program is not None}
+    cases = benchmark_cases(bounds, maps, seconds, bound_seconds, others, plans)
+    beside = f", beside {' and '.join(others)}" if others else ""
+    identity = f"benchmark of {', '.join(map(str, seconds))} s, bounds {bound_seconds} s{beside}"
     command = f"carproof experiment benchmark {' '.join(f'--seconds {each}' for each in seconds)}"
     return go("benchmark", identity, command, f"{len(cases)} cases", cases, benchmark_report, **campaign)
 

@@ -1,5 +1,6 @@
 """The benchmark of the field: cases of a table, planned, judged and compared."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -25,12 +26,20 @@ def test_cases_are_planned_and_stand_beside_the_tracker_and_other_planners(carpr
     outcome = carproof(f"experiment benchmark {options}")
     assert outcome.code == 0, outcome
     assert "yard even-1 00002 4.0 4 - 4 4" in " ".join(outcome.stdout.split())
-    assert "best planner on 1 of 1, tracker's best or less on 1 of 1" in outcome.stdout
+    assert "tracker's best or less on 1 of 1, no other planner better on 1 of 1" in outcome.stdout
     assert {path.name for path in Path("plans").iterdir()} == {"yard-even-1-2-1s.txt", "yard-even-1-2-bound.json"}
     judged = carproof(
         "check --map maps/yard.map --scen maps/deep/yard-even-1.scen --agents 2 plans/yard-even-1-2-1s.txt"
     )
     assert judged.code == 0, judged
+
+
+def test_figures_without_another_planner_neither_compare_with_one_nor_stand_in_for_a_comparison(carproof: Run) -> None:
+    asked = "experiment benchmark --maps maps --bounds bounds.csv --seconds 1 --store results.sqlite"
+    alone = carproof(f"{asked} --json")
+    assert (alone.code, json.loads(alone.stdout)["summary"]["ours 1 s"]) == (0, {"at or below the tracker": 1})
+    beside = carproof(f"{asked} --lacam3 silent")
+    assert (beside.code, "campaign/store" in beside.stderr) == (2, True), beside
 
 
 def test_another_planner_finds_the_map_and_plays_rounds(carproof: Run) -> None:
