@@ -13,6 +13,7 @@ the tick, how often no plan was found, and processor seconds.
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache, partial
 from heapq import heappop, heappush
 from pathlib import Path
 from time import process_time
@@ -49,6 +50,7 @@ def do_tasks(
     """Give tasks to robots until the tick; cells are numbered row by row."""
     names = [cell_id(cell % grid.width, cell // grid.width) for cell in range(grid.width * grid.height)]
     graph = with_headings(movingai_instance(grid, (), "park")).graph
+    soonest = cache(partial(first_reached, graph))
     here = {number: parts_of(names[cell])[0] for number, cell in enumerate(starts)}
     robots = tuple(Robot(number, start, start) for number, start in here.items())
     fleet = Fleet(Instance(graph, robots, "park"), planner=planner)
@@ -66,7 +68,7 @@ def do_tasks(
             done.append((robot, tick, task.pop(robot)))
         if robot not in task:
             task[robot] = next(waiting)
-        goal = first_reached(graph, here[robot], parts_of(names[task[robot]]))
+        goal = soonest(here[robot], parts_of(names[task[robot]]))
         change = fleet.advance(tick) if goal == here[robot] else fleet.assign(robot, [Stop(goal)], tick)
         if change.unplanned or goal == here[robot]:
             missed += bool(change.unplanned)

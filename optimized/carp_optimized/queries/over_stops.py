@@ -1,12 +1,14 @@
 """The CARP query of a robot with several stops, or with service: A* over windows and numbers of stops served.
 
-It goes as `carp_reference.query` does, label by label, with none of the shortcuts of `search`. A label is a window and
-a number of stops served, `window * stride + served`. What it has read is not noted, so its plans are not reused.
+It goes as `carp_reference.query` does, label by label. Of the shortcuts of `search` it has one: it ends where no
+windows lead back from the goal. A label is a window and a number of stops served, `window * stride + served`. What it
+has read is not noted, so its plans are not reused.
 """
 
 from carp_optimized.jit.compiling import RecordsExhausted, RoomExhausted, TicksExhausted, compiled
 from carp_optimized.jit.kinds import Ints, Longs
 from carp_optimized.queries.guides import guide_of, guide_slot
+from carp_optimized.queries.ways_back import CUT_OFF, first_look, look_back
 from carp_optimized.queries.windows import end_of_run, is_exchange, last_by, skip_below, start_of_run
 from carp_optimized.state.arrays import LARGEST, NEVER, NONE, TOO_FAR, UNKNOWN, UNREACHABLE, State
 from carp_optimized.state.records import close_record, start_record
@@ -32,6 +34,19 @@ def served_by(state: State, robot: int, first: int, count: int) -> int:
         if stop < last and records.resource[k] == stops.place[stop] and stay >= stops.service[stop]:
             stop += 1
     return stop - int(stops.first[robot])
+
+
+@compiled
+def has_goal_alone_left(state: State, robot: int, first: int, count: int) -> bool:
+    """Whether those visits have served all stops but the last, where the robot stays no longer than anywhere.
+
+    Then all labels have the same number of stops served, and the query is that of a robot with a goal alone.
+    """
+    stops = state.stops
+    last = int(stops.first[robot + 1]) - 1
+    passing = int(state.robots.pace[robot]) * int(state.graph.duration[stops.place[last]])
+    is_short = state.parks or stops.stay[robot] == passing
+    return bool(is_short and served_by(state, robot, first, count) == last - int(stops.first[robot]))
 
 
 @compiled
@@ -141,6 +156,10 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
         if to_goal == UNREACHABLE:
             return NONE
         raise TicksExhausted
+    goal_window = int(windows.offset[goal]) + int(windows.size[goal]) - 1
+    next_look = first_look(state, goal_window, latest, counts_all)
+    if next_look == CUT_OFF:
+        return NONE
     state.search.generation[0] += 1
     base = int(state.search.generation[0]) << 32
     own_slot = last_by(windows, resource, enter)
@@ -149,6 +168,8 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     windows.end[STANDING] = windows.end[end_slot]
     windows.source[STANDING] = windows.source[end_slot]
     own_slot = start_of_run(state, own_slot, behind)
+    entered = state.search.reached  # by a label of whatever number of stops served
+    entered[own_slot] = base - enter
     start = STANDING * stride + served
     tick = ready - pace * int(graph.duration[resource])
     reached[start] = base - tick
@@ -157,6 +178,7 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     stops.ties[0] = resource * stride + served
     stops.labels[0] = start
     size = 1
+    expansions = 0
     beyond = False
     while size > 0:
         label = int(stops.labels[0])
@@ -169,6 +191,11 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
         tick = base - int(reached[label])
         if tick + (key & ((1 << 31) - 1)) != key >> 31:
             continue  # reached earlier since this entry was made
+        expansions += 1
+        if expansions >= next_look:
+            next_look = look_back(state, robot, NONE, goal_window, 0, latest, expansions)
+            if next_look == CUT_OFF:
+                return NONE
         is_start = parent[label] == NONE
         ready = tick + pace * int(graph.duration[resource])
         entry = enter if is_start else tick
@@ -221,6 +248,7 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
                 elif entry + to_goal <= latest:
                     reached[other] = base - entry
                     parent[other] = label
+                    entered[window] = max(int(entered[window]), base - entry)
                     push(state, size, ((entry + to_goal) << 31) + to_goal, target * stride + done, other)
                     size += 1
     if beyond and latest > LARGEST:

@@ -3,9 +3,10 @@
 from carp_optimized.jit.compiling import RoomExhausted, TicksExhausted, compiled
 from carp_optimized.queries.blocks import below, lowest, width
 from carp_optimized.queries.ends import ENDED, end_from
-from carp_optimized.queries.guides import guide_slot, reach_all, toll_of
+from carp_optimized.queries.guides import guide_of, guide_slot, reach_all, toll_of
 from carp_optimized.queries.heap import push, replace_root
-from carp_optimized.queries.over_stops import find_over_stops, has_stops
+from carp_optimized.queries.over_stops import find_over_stops, has_goal_alone_left, has_stops
+from carp_optimized.queries.ways_back import CUT_OFF, first_look, look_back
 from carp_optimized.queries.windows import end_of_run, fits, is_exchange, last_by, plan_fits, skip_below, start_of_run
 from carp_optimized.state.arrays import (
     ASKED,
@@ -85,8 +86,12 @@ def find_any_plan(  # noqa: C901 - one case after the other
         return NONE
     past = max(history - 1, 0)
     if has_stops(state, robot):
-        return find_over_stops(state, robot, first, past, resource, enter, ready, now, behind, latest)
-    slot = guide_slot(state, robot, resource)
+        if not (state.shortcuts and has_goal_alone_left(state, robot, first, past)):
+            return find_over_stops(state, robot, first, past, resource, enter, ready, now, behind, latest)
+        is_noted = False
+        slot = guide_of(state, int(state.robots.destination[robot]))
+    else:
+        slot = guide_slot(state, robot, resource)
     expansions = search(state, robot, slot, resource, enter, ready, behind, latest, is_noted)
     if expansions == FURTHER:
         reach_all(state, slot)
@@ -221,7 +226,9 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
     A robot that parks ends its plan in the last window of its goal. Once that is entered at its first tick, no other
     parent can enter it earlier, so the plan is known, and the search ends: all windows of a smaller f, which may be
     those of the whole map if the goal is crossed late, would be expanded in vain. Where the plan's record does not note
-    what the search reads, `carp_optimized.queries.ends` looks for such an end now and then.
+    what the search reads, `carp_optimized.queries.ends` looks for such an end now and then. In the same way
+    `carp_optimized.queries.ways_back` looks whether there is a plan at all; where it finds that there is none,
+    `expansions[0]` is 0, as not all is known that this depends on.
     The best of the windows reached last waits outside the heap, for it is often the next. Windows between which there
     are only robots behind are one: from `window`, by which it is known, to `tail`.
     """
@@ -242,8 +249,10 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
     largest_key = (latest << 32) + LOW
     last_goal = goal if parks and state.shortcuts else NONE
     goal_window = int(windows.offset[goal]) + int(windows.size[goal]) - 1
-    next_try = FIRST_TRY if last_goal != NONE and not is_noted else NEVER
-    if next_try < NEVER and windows.start[goal_window] > latest:
+    next_try = FIRST_TRY if last_goal != NONE and counts_all and not is_noted else NEVER
+    next_look = first_look(state, goal_window, latest, counts_all)
+    state.search.expansions[0] = 0
+    if next_look == CUT_OFF:
         return 0
 
     toll = toll_of(state, slot, resource)
@@ -299,6 +308,10 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
                     state.search.goal[0] = goal_window
                     state.search.expansions[0] = expansions
                     return expansions
+        if expansions >= next_look:
+            next_look = look_back(state, robot, slot, goal_window, key >> 32, latest, expansions)
+            if next_look == CUT_OFF:
+                return 0
         last = node if counts_all else end_of_run(state, node, behind)
         end = int(windows.end[last])
         if expansions > 0:

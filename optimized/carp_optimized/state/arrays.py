@@ -160,6 +160,7 @@ class Ending(NamedTuple):
     `gathered` are windows, with what they had for `reached` and `parent` before; `place` is where a window is among
     them, if it is. By place: `until`, the last entry that counts; `is_due`, whether what leads there is still to be
     looked at; `trace`, the number of the last trace that has met the window. `keys` and `nodes` are a heap.
+    `until_by_window` is of the last look at ways back: its number times 2^32 plus the tick.
     """
 
     gathered: Ints
@@ -169,6 +170,7 @@ class Ending(NamedTuple):
     until: Ints
     is_due: Ints
     trace: Longs
+    until_by_window: Longs
     counts: Longs
     keys: Longs
     nodes: Ints

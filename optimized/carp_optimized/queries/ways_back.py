@@ -1,0 +1,91 @@
+"""Whether windows lead back from the goal to where a query has come: where none do, it has no plan to find.
+
+A* that finds no plan expands all windows to which it can come, which may be those of the whole map. Mostly a few robots
+that park cut off the goal, so that few windows lead there. They are looked at backwards, from the goal's last one.
+
+Each has an `until`, by which it must be entered: so early that the robot can go on by the `until` of another of them,
+whatever they forbid besides. The latest `until` comes first, so each window is looked at once. All windows of a plan
+are among them and entered by their `until`, beginning with the last. The first is the one in which the robot stands,
+which the query has entered. So if none of them is entered by its `until`, there is no plan.
+
+Windows are left out that come too late. Let F be the f of the entry of the queue that is next. Whatever the query
+enters from now on has no smaller f, so it enters a window q at F - h(q) or later. If it has not entered q by its
+`until`, and that is later, q is in no plan.
+
+The look ends at a window that is entered by then, for the goal is likely to be reached from there.
+"""
+
+from carp_optimized.jit.compiling import compiled
+from carp_optimized.queries.ends import entry_of
+from carp_optimized.queries.guides import toll_of
+from carp_optimized.queries.heap import push, replace_root
+from carp_optimized.queries.windows import skip_below
+from carp_optimized.state.arrays import NEVER, NONE, State
+
+CUT_OFF = 0
+LOOKS = 2  # the count, beside those of `ends`
+FEWEST = 64  # windows that a look may take
+
+
+@compiled
+def first_look(state: State, goal_window: int, latest: int, counts_all: bool) -> int:
+    """The expansions of a query until the first look; `CUT_OFF` if the goal is not free by `latest`, and for ever.
+
+    There is no look where robots vanish, or not all of them count.
+    """
+    if not (state.parks and state.shortcuts and counts_all):
+        return NEVER
+    is_free = state.windows.end[goal_window] == NEVER and state.windows.start[goal_window] <= latest
+    return FEWEST // 2 if is_free else CUT_OFF
+
+
+@compiled
+def look_back(state: State, robot: int, slot: int, goal_window: int, next_f: int, latest: int, expansions: int) -> int:
+    """The expansions of a query until the next look; `CUT_OFF` if no windows lead back to one that it has entered.
+
+    A plan is to enter the last window of the goal by the tick `latest`. Looks take less time than the query. `next_f`
+    is the f of the entry of its queue that is next, with the h of the guide in the slot; `NONE` if there is no such h.
+    """
+    graph = state.graph
+    windows = state.windows
+    ending = state.search.ending
+    pace = int(state.robots.pace[robot])
+    latest = min(latest, NEVER - 1)
+    left = FEWEST + expansions // 4
+    ending.counts[LOOKS] += 1
+    look = int(ending.counts[LOOKS]) << 32
+    ending.until_by_window[goal_window] = look + latest
+    ending.keys[0] = -latest
+    ending.nodes[0] = goal_window
+    size = 1
+    while size > 0:
+        until = -int(ending.keys[0])
+        window = int(ending.nodes[0])
+        size -= 1
+        replace_root(ending.keys, ending.nodes, size, int(ending.keys[size]), int(ending.nodes[size]))
+        if ending.until_by_window[window] != look + until:
+            continue  # it has a later one since this entry was made
+        if entry_of(state, window) <= until:
+            return NEVER
+        left -= 1
+        if left == 0:
+            return 4 * expansions
+        resource = int(windows.resource[window])
+        opens = int(windows.start[window])
+        for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
+            source = int(graph.source[edge])
+            need = pace * int(graph.duration[source])
+            toll = toll_of(state, slot, source) if slot != NONE else NONE
+            from_now_on = next_f - (toll >> 32) if toll >= 0 else 0
+            row_end = int(windows.offset[source]) + int(windows.size[source])
+            before = skip_below(windows.end, int(windows.offset[source]), row_end, opens)
+            while before < row_end and windows.start[before] + need <= until:
+                last = min(until, int(windows.end[before]))
+                entry = min(entry_of(state, before), max(int(windows.start[before]), from_now_on))
+                is_long = last >= max(opens, entry + need)
+                if is_long and ending.until_by_window[before] < look + last - need:
+                    ending.until_by_window[before] = look + last - need
+                    push(ending.keys, ending.nodes, size, need - last, before)
+                    size += 1
+                before += 1
+    return CUT_OFF
