@@ -3,8 +3,9 @@
 Ticks are `int`, from 0. Intervals are half-open: a robot that leaves at t and one that enters at t never
 share the resource. An end of `None` means for ever.
 
-The classes may hold nonsense, which `instance_rules` and `check` find. Source: the paper,
-section II; ter Mors 2010 for capacities and durations.
+The classes may hold nonsense, which `instance_rules` and `check` find. A visit is no data class: fleets have millions,
+so it is the array that documents have, read as it stands. `msgspec.structs.replace` makes one with other values.
+Source: the paper, section II; ter Mors 2010 for capacities and durations.
 """
 
 from collections import deque
@@ -12,6 +13,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Annotated, Literal, TypeAlias
+
+import msgspec
 
 from carp_spec.shapes import Number, of_shape
 
@@ -212,8 +215,7 @@ class Instance:
         return int(self.following == "forbidden")
 
 
-@dataclass(frozen=True, slots=True)
-class Visit:
+class Visit(msgspec.Struct, frozen=True, array_like=True, forbid_unknown_fields=True, gc=False):
     """A stay in a resource from the tick `enter` up to, not including, the tick `leave` (`None`: for ever)."""
 
     resource: ResourceId

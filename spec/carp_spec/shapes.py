@@ -8,6 +8,8 @@ from reprlib import repr as shown
 from types import NoneType
 from typing import Annotated, Any, TypeVar, cast, get_args, get_origin
 
+import msgspec
+
 from carp_spec.refusal import Refusal
 
 T = TypeVar("T")
@@ -90,7 +92,7 @@ def _parts(kind: Any) -> tuple[tuple[Any, ...], bool, Mapping[str, Any] | None]:
     if get_origin(kind) is Annotated:
         return _parts(get_args(kind)[0])
     given = None
-    if is_dataclass(kind):
+    if is_dataclass(kind) or isinstance(kind, msgspec.StructMeta):
         names = cast("tuple[str, ...]", cast("Any", kind).__match_args__)
         given = {name: kind.__annotations__[name] for name in names}
     return get_args(kind) or (kind,), get_origin(kind) is tuple, given

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import pytest
+from msgspec import structs
 
 import carp_reference
 from carp_optimized.execution import following as execution
@@ -52,9 +53,11 @@ def changed(draw: Draw, trace: Trace) -> Trace:
         at = draw.between(0, len(visits) - 1)
         visit = visits[at]
         if kind == 4:
-            visits[at] = replace(visit, enter=visit.enter + draw.one_of([-2, -1, 1, 2]))
+            visits[at] = structs.replace(visit, enter=visit.enter + draw.one_of([-2, -1, 1, 2]))
         elif kind == 5:
-            visits[at] = replace(visit, leave=draw.one_of([None, (visit.leave or trace.now) + draw.between(-2, 1)]))
+            visits[at] = structs.replace(
+                visit, leave=draw.one_of([None, (visit.leave or trace.now) + draw.between(-2, 1)])
+            )
         elif kind == 6:
             del visits[at]
         else:
@@ -114,7 +117,7 @@ def test_a_robot_that_appears_comes_from_nowhere() -> None:
 def test_ticks_beyond_the_arrays_are_left_to_the_law() -> None:
     _, instance, solution, trace = next(each for each in map(traced, range(99)) if each[3].plans[0].visits)
     assert not follows(instance, solution, replace(trace, now=2**40))
-    late = replace(trace.plans[0], visits=(replace(trace.plans[0].visits[0], enter=10**30),))
+    late = replace(trace.plans[0], visits=(structs.replace(trace.plans[0].visits[0], enter=10**30),))
     assert not follows(instance, solution, replace(trace, plans=(late, *trace.plans[1:])))
 
 

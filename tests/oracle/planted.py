@@ -7,6 +7,8 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+from msgspec import structs
+
 from carp_spec import Carp, Instance, Plan, Resource, Robot, Solution, Visit
 from carproof.conform.answers import Answer, Reply
 from carproof.conform.cases import Case, request_of
@@ -121,7 +123,10 @@ def short_ids(case: Case) -> Reply | None:
     plans = tuple(
         Plan(
             plan.robot,
-            tuple(replace(v, resource=v.resource % BIT_31) if isinstance(v.resource, int) else v for v in plan.visits),
+            tuple(
+                structs.replace(v, resource=v.resource % BIT_31) if isinstance(v.resource, int) else v
+                for v in plan.visits
+            ),
         )
         for plan in solution.plans
     )
@@ -151,7 +156,7 @@ def waits(case: Case) -> Reply | None:
     if plan is None:
         return None
     first, *rest = plan.visits
-    return query_document(Plan(plan.robot, (replace(first, enter=robot.release), *rest)))
+    return query_document(Plan(plan.robot, (structs.replace(first, enter=robot.release), *rest)))
 
 
 def arrives_only(case: Case) -> Reply | None:
@@ -169,7 +174,7 @@ def arrives_only(case: Case) -> Reply | None:
         return None
     *visits, last = plan.visits
     leave = None if case.instance.after_goal == "park" else last.enter + case.instance.duration(robot.id, robot.goal)
-    return query_document(Plan(plan.robot, (*visits, replace(last, leave=leave))))
+    return query_document(Plan(plan.robot, (*visits, structs.replace(last, leave=leave))))
 
 
 def short_services(robot: Robot) -> Robot:

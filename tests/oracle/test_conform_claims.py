@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from msgspec import structs
 from tests.oracle.running import Run
 from tests.oracle.test_conform_judges import Tampered, as_it_is
 
@@ -246,4 +247,4 @@ def ended(instance: Instance, plan: Plan) -> Plan:
     *visits, last = plan.visits
     stay = instance.stay(plan.robot, instance.robot[plan.robot].stops[-1])
     leave = None if instance.after_goal == "park" else last.enter + stay
-    return Plan(plan.robot, (*visits, replace(last, leave=leave)))
+    return Plan(plan.robot, (*visits, structs.replace(last, leave=leave)))

@@ -137,7 +137,7 @@ def jumps(instance: Instance) -> Solution:
     return right(instance)
 
 
-class Fickle(Visit):
+class Fickle(Visit, frozen=True):
     """A visit that ends when it is looked at."""
 
     def __getattribute__(self, name: str) -> Any:  # noqa: ANN401

@@ -3,11 +3,11 @@
 import json
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import msgspec
 import pytest
+from msgspec import structs
 
 import carp_reference
 from carp_spec import Plan, Solution
@@ -66,9 +66,10 @@ def later(plan: Plan) -> Plan:
     if not rest or first.leave is None:
         return plan
     delayed = [
-        replace(visit, enter=visit.enter + 1, leave=None if visit.leave is None else visit.leave + 1) for visit in rest
+        structs.replace(visit, enter=visit.enter + 1, leave=None if visit.leave is None else visit.leave + 1)
+        for visit in rest
     ]
-    return Plan(plan.robot, (replace(first, leave=first.leave + 1), *delayed))
+    return Plan(plan.robot, (structs.replace(first, leave=first.leave + 1), *delayed))
 
 
 def no_plan(case: Case, reply: Reply) -> Reply:

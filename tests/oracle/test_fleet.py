@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
+from msgspec import structs
 from tests.optimized.arrivals import CROWDED, ROOMS, Arrivals, arrivals, draw_options
 from tests.profiles import rest_in
 
@@ -159,7 +160,7 @@ def late_plan(fleet: Fleet, now: int) -> Plan | None:
     for plan in fleet.solution.plans:
         done = [visit for visit in plan.visits if visit.enter <= now]
         if len(done) > 1 and done[-1].enter == now and not has_ended(plan, now):
-            return replace(plan, visits=(*done[:-2], replace(done[-2], leave=None)))
+            return replace(plan, visits=(*done[:-2], structs.replace(done[-2], leave=None)))
     return None
 
 

@@ -12,6 +12,7 @@ import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec import structs
 from tests.oracle.running import Run
 
 from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, Robot, Solution, Visit
@@ -149,8 +150,10 @@ def test_a_vehicle_turns_between_the_headings_of_a_cell() -> None:
     turned = Resource("0/0 north", 1, 1, 0, 0)
     graph = ResourceGraph((*instance.graph.resources, turned), (*instance.graph.edges, ("0/0 north", "0/0")))
     first, second = solution.plans
-    later = replace(first, visits=tuple(replace(visit, enter=visit.enter + 1) for visit in first.visits))
-    turning = replace(first, visits=(Visit("0/0 north", 0, 1), replace(later.visits[0], leave=2), later.visits[1]))
+    later = replace(first, visits=tuple(structs.replace(visit, enter=visit.enter + 1) for visit in first.visits))
+    turning = replace(
+        first, visits=(Visit("0/0 north", 0, 1), structs.replace(later.visits[0], leave=2), later.visits[1])
+    )
     robots = (Robot("r0", "0/0 north", "2/0"), instance.robots[1])
     split = Instance(graph, robots, "park")
     found = check(split, Solution.of(split, [turning, second]), footprint=Footprint(1200, 700), cells=1000)

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from jsonschema import validators
+from msgspec import structs
 from tests.oracle.layout_files import OPENTCS
 from tests.oracle.running import Run
 from tests.profiles import draws
@@ -58,7 +59,7 @@ def named(instance: Instance, solution: Solution) -> tuple[Instance, Solution]:
     )
     robots = tuple(replace(each.in_names(name.__getitem__), id=robot[each.id]) for each in instance.robots)
     plans = tuple(
-        Plan(robot[plan.robot], tuple(replace(visit, resource=name[visit.resource]) for visit in plan.visits))
+        Plan(robot[plan.robot], tuple(structs.replace(visit, resource=name[visit.resource]) for visit in plan.visits))
         for plan in solution.plans
     )
     rest = (tuple(robot[id] for id in ids) for ids in (solution.order, solution.unplanned))

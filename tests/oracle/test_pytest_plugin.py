@@ -10,7 +10,7 @@ import pytest
 PLANNERS = """
 import dataclasses
 import carp_reference
-from carp_spec import Carp, Instance, Solution
+from carp_spec import Carp, Instance, Solution, Visit
 
 def right(instance: Instance) -> Solution:
     return carp_reference.plan(instance, Carp())
@@ -20,7 +20,7 @@ def hurries(instance: Instance) -> Solution:
     plans = []
     for plan in solution.plans:
         first, *rest = plan.visits
-        late = dataclasses.replace(first, enter=first.enter + 1)
+        late = Visit(first.resource, first.enter + 1, first.leave)
         plans.append(dataclasses.replace(plan, visits=(late, *rest)))
     return dataclasses.replace(solution, plans=tuple(plans))
 

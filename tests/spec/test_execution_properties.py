@@ -6,6 +6,7 @@ from itertools import pairwise, product
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from msgspec import structs
 from tests.profiles import draws
 from tests.spec.making import is_before
 from tests.spec.naive import close
@@ -101,7 +102,7 @@ def test_a_trace_that_is_none_is_found_before_rules_of_execution(
     for rule, plans in wrong.items():
         assert {each.rule for each in trace_violations(instance, solution, Trace(trace.now, plans))} >= {rule}
     if plan.visits:
-        gone = replace(plan, visits=(*plan.visits[:-1], replace(plan.visits[-1], enter=trace.now + 1)))
+        gone = replace(plan, visits=(*plan.visits[:-1], structs.replace(plan.visits[-1], enter=trace.now + 1)))
         plans = (*trace.plans[:at], gone, *trace.plans[at + 1 :])
         assert {each.rule for each in trace_violations(instance, solution, Trace(trace.now, plans))} == {"trace/ticks"}
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec import structs
 from tests.spec.making import PARKED, PARKING, SOLVED, VANISHING
 from tests.spec.strategies import SIZES, instances_with_plans
 
@@ -57,7 +58,7 @@ def test_right_plans_pass_and_no_mutant_does(instance: Instance) -> None:
 def test_ticks_that_arrays_do_not_hold_are_left_to_the_rules(instance: Instance, plans: tuple[Plan, ...]) -> None:
     assert breaks_no_rule(instance, plans)
     for tick in (LATEST, 2**63, 2**64, -1):
-        last = replace(plans[0].visits[-1], leave=tick)
+        last = structs.replace(plans[0].visits[-1], leave=tick)
         assert not breaks_no_rule(instance, (replace(plans[0], visits=(*plans[0].visits[:-1], last)), *plans[1:]))
 
 

@@ -6,6 +6,8 @@ from time import perf_counter
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from msgspec import structs
+
 from carp_spec import Instance, Neighbourhood, Plan, Refusal, ResourceId, Robot, RobotId, Solution, Stop
 from carp_spec.documents.solutions import PlanColumns
 from carp_spec.execution.traces import Trace
@@ -141,7 +143,7 @@ class _Known:
         if serves and stops[0].resource == here.resource:
             left = max(stops[0].service - (release - here.enter), 0)
             stops = (replace(stops[0], service=left), *stops[1:])
-        visits = (replace(here, enter=release), *later)
+        visits = (structs.replace(here, enter=release), *later)
         return replace(robot, stops=stops, release=release), replace(plan, visits=visits)
 
 

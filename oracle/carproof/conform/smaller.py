@@ -10,6 +10,8 @@ from dataclasses import replace
 from functools import partial
 from typing import TypeAlias, TypeVar
 
+from msgspec import structs
+
 from carp_reference.execution import order_of
 from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, RobotId, Stop, Visit
 from carp_spec.requests import sound_solution
@@ -185,7 +187,7 @@ def _moved(case: Case, gone: frozenset[ResourceId], became: Mapping[ResourceId, 
             if visits and visits[-1].resource == resource:
                 visits[-1] = replace(visits[-1], leave=visit.leave)
             else:
-                visits.append(replace(visit, resource=resource))
+                visits.append(structs.replace(visit, resource=resource))
             places[plan.robot, place] = len(visits) - 1
         plans.append(Plan(plan.robot, tuple(visits)))
     delays = {(robot, places[robot, place]): ticks for robot, place, ticks in case.delays}
@@ -265,7 +267,7 @@ def _numbered(case: Case) -> Case | None:
     plans = tuple(
         Plan(
             number.get(plan.robot, plan.robot),
-            tuple(replace(visit, resource=place.get(visit.resource, visit.resource)) for visit in plan.visits),
+            tuple(structs.replace(visit, resource=place.get(visit.resource, visit.resource)) for visit in plan.visits),
         )
         for plan in solution.plans
     )
@@ -313,7 +315,7 @@ def _with_numbers(case: Case, of: NumberOf, change: Mapping[ResourceId, int]) ->
     plans = []
     for plan in case.solution.plans:
         first, *others = plan.visits
-        plans.append(Plan(plan.robot, (replace(first, enter=instance.robot[plan.robot].release), *others)))
+        plans.append(Plan(plan.robot, (structs.replace(first, enter=instance.robot[plan.robot].release), *others)))
     return _made(case, instance, plans)
 
 

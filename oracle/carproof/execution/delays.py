@@ -8,6 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 
+from msgspec import structs
+
 from carp_reference.execution import Order, earliest, order_with
 from carp_spec import Instance, Plan, ResourceGraph, ResourceId, RobotId, Solution, Visit
 from carp_spec.execution.dependencies import Dependency, Node, stays_by_constraint
@@ -234,7 +236,7 @@ def until(trace: Trace, now: int) -> Trace:
         Plan(
             plan.robot,
             tuple(
-                replace(visit, leave=None if visit.leave is None or visit.leave > now else visit.leave)
+                structs.replace(visit, leave=None if visit.leave is None or visit.leave > now else visit.leave)
                 for visit in plan.visits
                 if visit.enter <= now
             ),

@@ -9,6 +9,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TypeAlias
 
+from msgspec import structs
+
 from carp_spec import Instance, Plan, ResourceId, Solution, Visit
 from carp_spec.windows import constraints_on, occupancy
 
@@ -64,7 +66,9 @@ def goal_is_left_wrongly(instance: Instance, solution: Solution) -> Iterator[Bro
     for plan in solution.plans:
         last, stop = plan.visits[-1], instance.robot[plan.robot].stops[-1]
         leave = last.enter + instance.stay(plan.robot, stop) if last.leave is None else last.leave + 1
-        yield _with_visits(instance, solution, plan, (*plan.visits[:-1], replace(last, leave=leave)), "plan/goal")
+        yield _with_visits(
+            instance, solution, plan, (*plan.visits[:-1], structs.replace(last, leave=leave)), "plan/goal"
+        )
 
 
 def stop_is_left_out(instance: Instance, solution: Solution) -> Iterator[BrokenSolution]:
@@ -82,14 +86,14 @@ def stop_is_left_out(instance: Instance, solution: Solution) -> Iterator[BrokenS
 def resource_is_unknown(instance: Instance, solution: Solution) -> Iterator[BrokenSolution]:
     """A visit is to a resource that the graph does not have."""
     for plan, position in _visits(solution):
-        elsewhere = replace(plan.visits[position], resource=NO_RESOURCE)
+        elsewhere = structs.replace(plan.visits[position], resource=NO_RESOURCE)
         yield _with_visits(instance, solution, plan, _exchanged(plan, position, elsewhere), "plan/resource")
 
 
 def robot_moves_nowhere(instance: Instance, solution: Solution) -> Iterator[BrokenSolution]:
     """A visit is to the same resource as the one before, and no resource has a move to itself."""
     for plan, position in _visits(solution, first=1):
-        same = replace(plan.visits[position], resource=plan.visits[position - 1].resource)
+        same = structs.replace(plan.visits[position], resource=plan.visits[position - 1].resource)
         yield _with_visits(instance, solution, plan, _exchanged(plan, position, same), "plan/move")
 
 
@@ -107,7 +111,7 @@ def robot_hurries(instance: Instance, solution: Solution) -> Iterator[BrokenSolu
         if visit.leave is not None:
             leave = visit.enter + instance.duration(plan.robot, visit.resource) - 1
             rest = later(plan.visits[position + 1 :], leave - visit.leave)
-            visits = (*plan.visits[:position], replace(visit, leave=leave), *rest)
+            visits = (*plan.visits[:position], structs.replace(visit, leave=leave), *rest)
             yield _with_visits(instance, solution, plan, visits, "plan/duration")
 
 
@@ -120,7 +124,7 @@ def robot_overstays(instance: Instance, solution: Solution) -> Iterator[BrokenSo
             for enter, _ in stays:
                 if visit.leave is not None and visit.leave <= enter and occupancy(stays, enter) == capacity:
                     rest = later(plan.visits[position + 1 :], enter + 1 - visit.leave)
-                    visits = (*plan.visits[:position], replace(visit, leave=enter + 1), *rest)
+                    visits = (*plan.visits[:position], structs.replace(visit, leave=enter + 1), *rest)
                     broken = "joint/group" if place else "joint/capacity"
                     yield _with_visits(instance, solution, plan, visits, broken)
 
@@ -184,7 +188,7 @@ def _detour(instance: Instance, plan: Plan, position: int, tick: int, over: Reso
     """The plan's visits with a detour: from the visit at the position over the other resource at the tick and back."""
     visit = plan.visits[position]
     back = tick + instance.duration(plan.robot, over)
-    away = (replace(visit, leave=tick), Visit(over, tick, back))
+    away = (structs.replace(visit, leave=tick), Visit(over, tick, back))
     rest = later(plan.visits[position:], back - visit.enter)
     return (*plan.visits[:position], *away, *rest)
 

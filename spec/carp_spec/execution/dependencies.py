@@ -10,6 +10,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias, cast
 
+from msgspec import structs
+
 from carp_spec.model import Instance, Plan, ResourceGraph, ResourceId, RobotId, Visit
 from carp_spec.plan_rules import least_stays
 
@@ -63,7 +65,7 @@ def stays_by_constraint(graph: ResourceGraph, plans: Sequence[Plan]) -> dict[int
                 stay = Stay(node, node, visit, ways[place], None)
                 if each in before:
                     one = stays[each].pop()
-                    stay = replace(one, last=node, visit=replace(one.visit, leave=visit.leave))
+                    stay = replace(one, last=node, visit=structs.replace(one.visit, leave=visit.leave))
                 stays[each].append(replace(stay, target=ways[place + 2]))
             before = constraints
     return stays

@@ -4,6 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 
+from msgspec import structs
+
 from carp_spec.check import MOST_LISTED
 from carp_spec.execution.traces import Trace
 from carp_spec.inputs.options import require_limits
@@ -94,7 +96,7 @@ def _until(plan: Plan, now: int) -> Plan:
     """The plan, with the visit under way as far as it is known."""
     if not plan.visits or plan.visits[-1].leave is not None:
         return plan
-    return replace(plan, visits=(*plan.visits[:-1], replace(plan.visits[-1], leave=now + 1)))
+    return replace(plan, visits=(*plan.visits[:-1], structs.replace(plan.visits[-1], leave=now + 1)))
 
 
 def _served(instance: Instance, plan: Plan) -> Iterator[Served]:

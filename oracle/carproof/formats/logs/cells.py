@@ -4,9 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from carp_spec import Instance, Plan, Refusal
+from carp_spec import Instance, Plan, Refusal, Visit
 from carp_spec.documents.decoding import without_collection
-from carp_spec.documents.solutions import visits_of
 from carp_spec.execution.traces import Trace
 from carp_spec.rule import DESIGN
 from carproof.formats.walks import Cell
@@ -55,5 +54,5 @@ def trace_of(instance: Instance, log: CellLog) -> Trace:
         cells = map(tuple, walk[enters].tolist())
         names = [resources[cell] if cell in resources else cell_id(*cell) for cell in cells]
         entered = [*map(shared.__getitem__, enters)]
-        plans.append(Plan(robot, visits_of(names, entered, [*entered[1:], None])))
+        plans.append(Plan(robot, tuple(map(Visit, names, entered, [*entered[1:], None]))))
     return Trace(ticks[-1], tuple(plans))
