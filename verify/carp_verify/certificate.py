@@ -13,6 +13,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise, product
 from typing import TypeAlias
 
+from msgspec import structs
+
 from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, Violation, Visit, judge
 from carp_spec.model import Group, Move
 from carp_spec.rule import named
@@ -175,7 +177,7 @@ def moves_between(instance: Instance, plans: Sequence[Plan]) -> Mapping[tuple[in
 def longer(stays: Stays, gap: int) -> Stays:
     """The visits, each `gap` ticks longer."""
     return {
-        robot: [each if each.leave is None else replace(each, leave=each.leave + gap) for each in visits]
+        robot: [each if each.leave is None else structs.replace(each, leave=each.leave + gap) for each in visits]
         for robot, visits in stays.items()
     }
 

@@ -228,7 +228,8 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
     those of the whole map if the goal is crossed late, would be expanded in vain. Where the plan's record does not note
     what the search reads, `carp_optimized.queries.ends` looks for such an end now and then. In the same way
     `carp_optimized.queries.ways_back` looks whether there is a plan at all; where it finds that there is none,
-    `expansions[0]` is 0, as not all is known that this depends on.
+    `expansions[0]` is 0, as not all is known that this depends on. Who notes it and looks for plans by a tick asks why
+    there is none, so nobody looks then.
     The best of the windows reached last waits outside the heap, for it is often the next. Windows between which there
     are only robots behind are one: from `window`, by which it is known, to `tail`.
     """
@@ -250,7 +251,7 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
     last_goal = goal if parks and state.shortcuts else NONE
     goal_window = int(windows.offset[goal]) + int(windows.size[goal]) - 1
     next_try = FIRST_TRY if last_goal != NONE and counts_all and not is_noted else NEVER
-    next_look = first_look(state, goal_window, latest, counts_all)
+    next_look = NEVER if is_noted and is_bounded else first_look(state, goal_window, latest, counts_all)
     state.search.expansions[0] = 0
     if next_look == CUT_OFF:
         return 0

@@ -185,7 +185,7 @@ def _moved(case: Case, gone: frozenset[ResourceId], became: Mapping[ResourceId, 
         for place, visit in enumerate(plan.visits):
             resource = became[visit.resource]
             if visits and visits[-1].resource == resource:
-                visits[-1] = replace(visits[-1], leave=visit.leave)
+                visits[-1] = structs.replace(visits[-1], leave=visit.leave)
             else:
                 visits.append(structs.replace(visit, resource=resource))
             places[plan.robot, place] = len(visits) - 1
