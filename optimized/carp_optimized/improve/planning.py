@@ -123,7 +123,7 @@ class Found:
             return Solution.of(self.instance, plans)
 
     def document(self) -> SolutionDocument:
-        """The document of that solution; to make it takes a third of the time."""
+        """The document of that solution, without the solution."""
         with without_collection():
             plans = {robot: PlanDocument(robot, tuple(visits)) for robot, visits in self.rows()}
             unplanned = tuple(each.id for each in self.instance.robots if each.id not in plans)

@@ -24,7 +24,7 @@ from carp_optimized.state.arrays import NEVER, NONE, State
 
 CUT_OFF = 0
 LOOKS = 2  # the count, beside those of `ends`
-FEWEST = 64  # windows that a look may take
+FEWEST = 64  # windows that any look may take
 
 
 @compiled
@@ -43,8 +43,9 @@ def first_look(state: State, goal_window: int, latest: int, counts_all: bool) ->
 def look_back(state: State, robot: int, slot: int, goal_window: int, next_f: int, latest: int, expansions: int) -> int:
     """The expansions of a query until the next look; `CUT_OFF` if no windows lead back to one that it has entered.
 
-    A plan is to enter the last window of the goal by the tick `latest`. Looks take less time than the query. `next_f`
-    is the f of the entry of its queue that is next, with the h of the guide in the slot; `NONE` if there is no such h.
+    A plan is to enter the last window of the goal by the tick `latest`. `next_f` is the f of the entry of the query's
+    queue that is next, with the h of the guide in the slot; the slot is `NONE` if h is not that of a guide. A look
+    takes at most `FEWEST` windows and a quarter of those that the query has expanded.
     """
     graph = state.graph
     windows = state.windows

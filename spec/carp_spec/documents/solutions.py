@@ -99,7 +99,7 @@ def visits_document(plan: Plan) -> tuple[VisitDocument, ...]:
 class PlanColumns:
     """A plan by columns: all resources, all ticks of entry, and the tick at which the last visit is left.
 
-    It takes a tenth of the time to make, to compare and to write that a plan does.
+    Where nobody asks for the plan, its visits are never made.
     """
 
     robot: RobotId
