@@ -13,9 +13,8 @@ import pytest
 PLUGINS_LEFT_OUT = ["-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:cov"]
 TOO_LONG = ["-k", "not every_small_query"]
 ALSO: dict[str, list[str]] = {
-    "carp_spec.plan_rules": ["test_check.py", "test_rule.py"],
-    "carp_spec.joint_rules": ["test_check.py", "test_rule.py"],
-    "carp_spec.check": ["test_rule.py"],
+    "carp_spec.plan_rules": ["test_check.py"],
+    "carp_spec.joint_rules": ["test_check.py"],
     "carp_spec.rule": ["test_check.py"],
     "carp_spec.documents.instances": ["test_documents.py", "test_schema.py"],
     "carp_spec.documents.solutions": ["test_documents.py", "test_schema.py"],

@@ -6,9 +6,8 @@ from hypothesis import strategies as st
 from tests.profiles import draws
 from tests.spec.making import CROSSED, plan_of
 
-import carp_reference
 from carp_reference.execution import order_of, retime, solution_at
-from carp_spec import Carp, Instance, Plan, Refusal, Solution, Visit, check_update, judge
+from carp_spec import Instance, Plan, Refusal, Solution, Visit, check_update, judge
 from carp_spec.execution.execution_rules import trace_violations
 from carp_spec.execution.traces import Trace
 from carproof.execution.delays import Delay, executed, in_order, planned, stuck
@@ -87,12 +86,3 @@ def test_a_history_that_no_lawful_plan_has_is_refused(trace: Trace, rule: str) -
         retime(*CROSSED, trace)
     assert refused.value.rule == rule
     assert refused.value.path.startswith("$.plans[")
-
-
-def test_a_retimed_fleet_is_under_way_for_queries() -> None:
-    instance, solution = CROSSED
-    order = order_of(instance, solution)
-    delays = [Delay("r1", 0, 3)]
-    after = retime(instance, solution, executed(order, in_order(order, delays), delays, 3))
-    assert carp_reference.query(instance, after.plans, "r2", 3) is not None
-    assert carp_reference.plan(instance, Carp()) == solution

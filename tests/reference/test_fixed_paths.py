@@ -8,7 +8,7 @@ from tests.spec.making import grid, instance, line, plan_of
 from carp_reference import plan
 from carp_reference.fixed_paths import disjoint_paths, find_on_path, shortest_paths
 from carp_reference.problem import prepare
-from carp_spec import FixedPaths, Instance, Resource, ResourceGraph, Robot, Solution
+from carp_spec import FixedPaths, Instance, Resource, ResourceGraph, Robot, Solution, judge
 from carp_spec.planners import PathKind
 
 OVERLAPPING = ResourceGraph(
@@ -70,6 +70,14 @@ def test_the_path_that_arrives_earliest_is_taken() -> None:
     for paths in (FixedPaths(k=2), FixedPaths(k=2, paths="disjoint")):
         solution = plan(two, paths)
         assert solution.plans[1] == plan_of("r1", ("0,0", 0, 1), ("0,1", 1, 2), ("1,1", 2, 3))
+
+
+@pytest.mark.parametrize("kind", get_args(PathKind))
+def test_plans_on_fixed_paths_break_no_rule(kind: PathKind) -> None:
+    four = instance(grid(3, 3), ("0,0", "2,2"), ("2,2", "0,0"), ("0,2", "2,0"), ("1,1", "1,1"))
+    solution = plan(four, FixedPaths(k=3, paths=kind))
+    assert judge(four, solution).valid
+    assert not solution.unplanned
 
 
 def test_with_one_path_alone_no_robot_evades_another() -> None:

@@ -8,29 +8,13 @@ from tests.spec.making import grid, instance, line
 from carp_reference import orderings, plan
 from carp_spec import (
     Carp,
-    FixedPaths,
     Greedy,
     LongestFirst,
-    Neighbourhood,
-    Planner,
     Resource,
     ResourceGraph,
     Shuffled,
-    TimeExpanded,
-    judge,
-    total_cost,
 )
 
-ALL_PLANNERS: list[Planner] = [
-    Carp(),
-    Shuffled(attempts=3, seed=1),
-    LongestFirst(),
-    Greedy(),
-    Neighbourhood(m=3),
-    FixedPaths(),
-    FixedPaths(k=2, paths="disjoint"),
-    TimeExpanded(),
-]
 SIDING = ResourceGraph(tuple(map(Resource, "abcde")), (("a", "b"), ("b", "c"), ("c", "d"), ("b", "e")))
 
 
@@ -69,17 +53,3 @@ def test_greedy_plans_the_cheapest_of_each_round() -> None:
     assert plan(four, Greedy()).order == ("r1", "r3", "r2", "r0")
     three = instance(line("abc"), ("a", "a"), ("a", "c"), ("c", "b"))
     assert plan(three, Greedy()).unplanned == ("r1",)
-
-
-@pytest.mark.parametrize("planner", ALL_PLANNERS, ids=str)
-def test_every_planner_returns_a_valid_solution(planner: Planner) -> None:
-    four = instance(grid(3, 3), ("0,0", "2,2"), ("2,2", "0,0"), ("0,2", "2,0"), ("1,1", "1,1"))
-    solution = plan(four, planner)
-    assert judge(four, solution).valid
-    assert solution.unplanned == ()
-    assert total_cost(four, solution.plans) >= 12
-
-
-def test_the_time_expanded_planner_leaves_out_a_robot_without_a_plan() -> None:
-    three = instance(line("abc"), ("a", "a"), ("a", "c"), ("c", "b"))
-    assert plan(three, TimeExpanded()).unplanned == ("r1",)

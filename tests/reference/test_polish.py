@@ -1,13 +1,12 @@
 """Polishing, as it is to be read: it repairs, improves, and never makes a solution worse."""
 
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
 from tests.spec.making import instance_on, line
 
 from carp_reference import polish
-from carp_spec import Instance, Refusal, Robot, Solution, judge, total_cost
+from carp_spec import Instance, Robot, Solution, judge, total_cost
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
@@ -52,9 +51,3 @@ def test_a_robot_without_a_way_stays_unplanned() -> None:
     instance = instance_on(line("ab", directed=True), Robot("r", "b", "a"))
     nobody = Solution((), (), ("r",))
     assert polish(instance, nobody, iterations=3) == nobody
-
-
-def test_wrong_options_are_refused() -> None:
-    instance = grid_instance(Grid(4, 4), Fleet(robots=2))
-    with pytest.raises(Refusal, match="iterations"):
-        polish(instance, Solution((), (), ()), iterations=-1)

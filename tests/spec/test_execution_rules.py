@@ -3,7 +3,6 @@
 import random
 from dataclasses import replace
 
-import pytest
 from tests.spec.making import (
     CROSSED,
     RING,
@@ -18,36 +17,10 @@ from tests.spec.making import (
     solution_of,
 )
 
-from carp_spec import Instance, Plan, Refusal, Solution, Visit, violations_of
-from carp_spec.documents.solutions import read_trace, trace_document, write_trace
+from carp_spec import Instance, Plan, Solution, Visit, violations_of
 from carp_spec.execution.dependencies import Dependency, Node, dependencies, shortest_cycle
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carp_spec.execution.traces import Trace
-
-TRACE = Trace(2, (Plan("r1", (Visit("a", 0, 1), Visit("b", 1, None))), Plan("r2", ())))
-
-
-def test_a_trace_is_read_as_it_was_written() -> None:
-    assert read_trace(write_trace(TRACE)) == TRACE
-
-
-@pytest.mark.parametrize(
-    ("change", "path", "rule"),
-    [
-        ({"now": -1}, "$.now", "document/shape"),
-        ({"now": True}, "$.now", "document/shape"),
-        ({"format": "carproof-trace/2"}, "$.format", "document/format"),
-        ({"plans": [{"robot": "r1", "visits": [["a", 0]]}]}, "$.plans[0].visits[0]", "document/shape"),
-        ({"more": 1}, "$", "document/shape"),
-    ],
-)
-def test_a_malformed_trace_is_refused_with_path_and_rule(change: dict[str, object], path: str, rule: str) -> None:
-    import msgspec
-
-    data = msgspec.json.encode({**msgspec.to_builtins(trace_document(TRACE)), **change})
-    with pytest.raises(Refusal) as refused:
-        read_trace(data)
-    assert (refused.value.path, refused.value.rule) == (path, rule)
 
 
 def test_rules_of_execution_are_asked_only_of_what_is_a_trace() -> None:

@@ -1,14 +1,18 @@
 """Robots together: who is blamed, where and when."""
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import TypeAlias
 
-from tests.spec.making import VANISHING, instance_on, line, plan_of
+import pytest
+from tests.spec.making import VANISHING, Stay, instance_on, line, plan_of
 
 from carp_spec import Group, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Violation, violations_of
 from carp_spec.joint_rules import capacity_is_kept, exchanges_are_avoided, solution_covers_robots, solution_orders_plans
 
 NAMES = ("r1", "r2", "r3", "r4")
 ROW = instance_on(line("ab"), *(Robot(name, "a", "b") for name in NAMES))
+Stays: TypeAlias = tuple[str, *tuple[Stay, ...]]
 WIDE = Instance(ResourceGraph((Resource("a", capacity=2),), ()), ROW.robots)
 
 
@@ -16,53 +20,40 @@ def crowd(start: int, end: int | None, *robots: str, capacity: int = 1, resource
     return Violation("joint/capacity", robots, resource, start, end, f"capacity {capacity}")
 
 
-def test_a_crowd_is_one_violation_from_when_it_begins_until_it_ends() -> None:
-    plans = [plan_of("r3", ("a", 0, 6)), plan_of("r1", ("a", 2, None)), plan_of("r2", ("a", 4, 9))]
-    assert list(capacity_is_kept(ROW, plans)) == [crowd(2, 9, "r1", "r2", "r3")]
-
-
-def test_robots_that_change_places_at_a_tick_keep_a_crowd_up() -> None:
-    plans = [plan_of("r1", ("a", 0, 9)), plan_of("r2", ("a", 1, 4)), plan_of("r3", ("a", 4, 6))]
-    assert list(capacity_is_kept(ROW, plans)) == [crowd(1, 6, "r1", "r2", "r3")]
-
-
-def test_a_crowd_names_nobody_who_left_before_it_began_or_came_after_it_ended() -> None:
-    plans = [plan_of("r1", ("a", 0, 2), ("a", 8, 9)), plan_of("r2", ("a", 2, 5)), plan_of("r3", ("a", 3, 5))]
-    again = plan_of("r4", ("a", 8, 9))
-    assert list(capacity_is_kept(ROW, [*plans, again])) == [crowd(3, 5, "r2", "r3"), crowd(8, 9, "r1", "r4")]
-
-
-def test_a_crowd_for_ever_has_no_end() -> None:
-    plans = [plan_of("r1", ("a", 3, None)), plan_of("r2", ("a", 5, None))]
-    assert list(capacity_is_kept(ROW, plans)) == [crowd(5, None, "r1", "r2")]
+@pytest.mark.parametrize(
+    ("plans", "crowds"),
+    [
+        # robots that change places at a tick keep a crowd up
+        ([("r1", ("a", 0, 9)), ("r2", ("a", 1, 4)), ("r3", ("a", 4, 6))], [crowd(1, 6, "r1", "r2", "r3")]),
+        # it names nobody who left before it began or came after it ended
+        (
+            [("r1", ("a", 0, 2), ("a", 8, 9)), ("r2", ("a", 2, 5)), ("r3", ("a", 3, 5)), ("r4", ("a", 8, 9))],
+            [crowd(3, 5, "r2", "r3"), crowd(8, 9, "r1", "r4")],
+        ),
+        ([("r1", ("a", 3, None)), ("r2", ("a", 5, None))], [crowd(5, None, "r1", "r2")]),
+        # who leaves at a tick makes room for who enters at it
+        ([("r1", ("a", 0, 5)), ("r2", ("a", 5, 9))], []),
+        # a visit of no ticks takes no room, and is no part of a crowd
+        ([("r1", ("a", 0, 9)), ("r2", ("a", 5, 5)), ("r3", ("a", 7, 3))], []),
+        ([("r1", ("a", 0, 9)), ("r2", ("a", 5, 5)), ("r3", ("a", 1, 9))], [crowd(1, 9, "r1", "r3")]),
+        # crowds come in the order of the resources
+        (
+            [(name, ("b", 0, 1), ("a", 1, 2)) for name in ("r1", "r2")],
+            [crowd(1, 2, "r1", "r2"), crowd(0, 1, "r1", "r2", resource="b")],
+        ),
+    ],
+)
+def test_a_crowd_is_one_violation_from_when_it_begins_until_it_ends(
+    plans: Sequence[Stays], crowds: list[Violation]
+) -> None:
+    assert list(capacity_is_kept(ROW, [plan_of(robot, *stays) for robot, *stays in plans])) == crowds
 
 
 def test_capacity_counts_robots_and_not_visits() -> None:
     twice = plan_of("r1", ("a", 0, 5), ("a", 2, 4))
     assert list(capacity_is_kept(WIDE, [twice, plan_of("r2", ("a", 3, 9))])) == []
     three = [twice, plan_of("r2", ("a", 3, 9)), plan_of("r3", ("a", 1, 9))]
-    assert list(capacity_is_kept(WIDE, three)) == [
-        crowd(3, 5, "r1", "r2", "r3", capacity=2),
-    ]
-
-
-def test_who_leaves_at_a_tick_makes_room_for_who_enters_at_it() -> None:
-    assert list(capacity_is_kept(ROW, [plan_of("r1", ("a", 0, 5)), plan_of("r2", ("a", 5, 9))])) == []
-
-
-def test_a_visit_of_no_ticks_takes_no_room() -> None:
-    plans = [plan_of("r1", ("a", 0, 9)), plan_of("r2", ("a", 5, 5)), plan_of("r3", ("a", 7, 3))]
-    assert list(capacity_is_kept(ROW, plans)) == []
-
-
-def test_a_visit_of_no_ticks_is_no_part_of_a_crowd() -> None:
-    plans = [plan_of("r1", ("a", 0, 9)), plan_of("r2", ("a", 5, 5)), plan_of("r3", ("a", 1, 9))]
-    assert list(capacity_is_kept(ROW, plans)) == [crowd(1, 9, "r1", "r3")]
-
-
-def test_crowds_come_in_the_order_of_the_resources() -> None:
-    plans = [plan_of(name, ("b", 0, 1), ("a", 1, 2)) for name in ("r1", "r2")]
-    assert list(capacity_is_kept(ROW, plans)) == [crowd(1, 2, "r1", "r2"), crowd(0, 1, "r1", "r2", resource="b")]
+    assert list(capacity_is_kept(WIDE, three)) == [crowd(3, 5, "r1", "r2", "r3", capacity=2)]
 
 
 def test_an_exchange_names_all_who_take_part_and_comes_in_order_of_time() -> None:
@@ -89,19 +80,6 @@ def test_exchanges_at_one_tick_come_in_the_order_of_the_resources() -> None:
         "they exchange a and d at tick 1",
         "they exchange b and c at tick 1",
     ]
-
-
-def test_robots_that_make_the_same_move_together_do_not_exchange() -> None:
-    together = [plan_of(robot, ("b", 0, 3), ("c", 3, 5)) for robot in ("r1", "r2")]
-    assert list(exchanges_are_avoided(VANISHING, together)) == []
-
-
-def test_robots_may_follow_each_other_and_turn_in_a_circle() -> None:
-    ring = ResourceGraph(line("abc").resources, (("a", "b"), ("b", "c"), ("c", "a")))
-    instance = instance_on(ring, *(Robot(name, "a", "b") for name in NAMES))
-    turn = [plan_of(name, (here, 0, 1), (there, 1, 2)) for name, here, there in zip(NAMES, "abc", "bca", strict=False)]
-    assert list(exchanges_are_avoided(instance, turn)) == []
-    assert list(capacity_is_kept(instance, turn)) == []
 
 
 def test_a_robot_does_not_exchange_with_itself() -> None:
@@ -175,16 +153,6 @@ def test_two_robots_that_make_a_move_within_a_group_exchange() -> None:
         "[joint/exchange] resource a in [3,4): robots r2, r1 (they exchange ('a', 'b') and ('a', 'b') at tick 3)",
     ]
     assert told(instance, same[0]) == []
-
-
-def test_where_following_is_forbidden_a_robot_enters_after_a_free_tick() -> None:
-    instance = replace(ROW, following="forbidden")
-    before = plan_of("r1", ("a", 0, 3), ("b", 3, 4))
-    assert told(instance, before, plan_of("r2", ("a", 4, 5))) == []
-    assert told(instance, before, plan_of("r2", ("a", 3, 4))) == [
-        "[joint/following] resource a in [3,4): robots r1, r2 (capacity 1, with a free tick after each robot)"
-    ]
-    assert told(ROW, before, plan_of("r2", ("a", 3, 4))) == []
 
 
 def test_a_solution_is_told_what_it_names_too_often_and_too_rarely() -> None:

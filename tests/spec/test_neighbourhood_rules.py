@@ -6,7 +6,7 @@ from math import isqrt
 
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.spec.making import instance_on, line, plan_of
+from tests.spec.making import instance_on, plan_of
 from tests.spec.strategies import FEWER
 
 from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Visit
@@ -65,13 +65,6 @@ def test_each_term_is_the_floor_of_the_scaled_euclidean_distance(dx: int, dy: in
     term = distance(instance, plan_of("r", ("a", 0, 1)), plan_of("s", ("b", 0, 1)))
     assert term.denominator == 1
     assert term**2 <= 2**32 * (dx**2 + dy**2) < (term + 1) ** 2
-
-
-def test_robots_stand_at_their_starts_before_release_and_at_their_goals_after_arrival() -> None:
-    instance = instance_on(line("abc"), Robot("r", "a", "b"), Robot("s", "c", "b", release=3))
-    early, late = plan_of("r", ("a", 0, 1), ("b", 1, 2)), plan_of("s", ("c", 3, 4), ("b", 4, 5))
-    apart = [2, 1, 1, 1, 0]
-    assert distance(instance, early, late) == Fraction(2**16 * sum(apart), len(apart))
 
 
 @FEWER

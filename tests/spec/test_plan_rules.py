@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from msgspec import structs
-from tests.spec.making import PARKED, SOLVED, VANISHING, plan_of
+from tests.spec.making import PARKED, SOLVED, plan_of
 from tests.spec.strategies import FEWER
 
 from carp_spec import (
@@ -18,26 +18,14 @@ from carp_spec import (
     Stop,
     Visit,
     has_ended,
-    plan_cost,
-    total_cost,
 )
 from carp_spec.instance_rules import stops_are_places_to_serve
 from carp_spec.plan_rules import (
-    is_plan_cost,
-    is_total_cost,
     least_stays,
     plan_keeps_history,
     stops_left,
     stops_served,
 )
-
-
-def test_costs_count_from_the_release_to_entering_the_goal() -> None:
-    assert [plan_cost(VANISHING, plan) for plan in SOLVED] == [5, 3, 0]
-    assert total_cost(VANISHING, SOLVED) == 8
-    assert total_cost(VANISHING, ()) == 0
-    assert [is_plan_cost(VANISHING, SOLVED[0], cost) for cost in (4, 5, 6)] == [False, True, False]
-    assert [is_total_cost(VANISHING, SOLVED, cost) for cost in (7, 8, 9)] == [False, True, False]
 
 
 @pytest.mark.parametrize(
@@ -96,38 +84,6 @@ def test_visits_that_serve_last_as_long_as_the_service_and_others_as_the_duratio
 def test_what_is_no_list_of_stops_is_told_with_its_place(stops: tuple[Stop, ...], path: str) -> None:
     wrong = replace(HALL, robots=(replace(PICK, stops=stops),))
     assert [(fault.rule, fault.path) for fault in stops_are_places_to_serve(wrong)] == [("instance/stops", path)]
-
-
-WHOLE = SOLVED[0]
-HISTORY_TOLD = {
-    "another way": (
-        plan_of("r1", ("a", 0, 3), ("b", 3, 4)),
-        2,
-        [
-            "[fleet/history] resource a in [0,3): robot r1 (by 2 it was in a, entered at 0 and left at 2)",
-            "[fleet/history] resource b in [3,4): robot r1 (by 2 it was in b, entered at 2 and left no earlier than 2)",
-        ],
-    ),
-    "too short": (
-        plan_of("r1", ("a", 0, 2)),
-        4,
-        [
-            "[fleet/history] resource b in [2,3): robot r1 (by 4 it was in b, entered at 2 and left at 3)",
-            "[fleet/history] resource c in [3,5): robot r1 (by 4 it was in c, entered at 3 and left no earlier than 4)",
-        ],
-    ),
-    "gone on after its end": (
-        plan_of("r1", ("a", 0, 2), ("b", 2, 3), ("c", 3, 5), ("d", 5, 6), ("c", 6, 8)),
-        6,
-        ["[fleet/history] resource c in [6,8): robot r1 (its plan had ended by 6)"],
-    ),
-}
-
-
-@pytest.mark.parametrize("what", HISTORY_TOLD)
-def test_what_is_not_kept_of_the_history_is_told(what: str) -> None:
-    after, now, expected = HISTORY_TOLD[what]
-    assert [str(violation) for violation in plan_keeps_history(WHOLE, after, now)] == expected
 
 
 def was_at(plan: Plan, tick: int) -> tuple[object, int] | None:

@@ -9,7 +9,6 @@ from carp_spec import (
     LongestFirst,
     Neighbourhood,
     Planner,
-    Refusal,
     Shuffled,
     TimeExpanded,
 )
@@ -45,32 +44,6 @@ def test_every_planner_is_known_by_the_name_that_it_bears() -> None:
         "carp", "shuffled", "longest-first", "greedy", "neighbourhood", "fixed-paths", "time-expanded",
     ]  # fmt: skip
     assert all(kind.name == name for name, kind in PLANNERS.items())
-
-
-COUNT = "must be a whole number of at least 1"
-SAMPLE = f"must be a whole number between 1 and {LARGEST_SAMPLE}"
-SEED = f"must be a whole number between 0 and {LARGEST_SEED}"
-OUT_OF_RANGE: list[tuple[str, str, str, list[object]]] = [
-    ("shuffled", "attempts", COUNT, [0, -1, True, 1.0, "1", None, [1]]),
-    ("shuffled", "seed", SEED, [-1, LARGEST_SEED + 1, None, True, 0.0]),
-    ("neighbourhood", "m", COUNT, [0, False, 2.5, None]),
-    ("neighbourhood", "sample", SAMPLE, [0, LARGEST_SAMPLE + 1, True, "all"]),
-    ("neighbourhood", "seed", SEED, [-1, LARGEST_SEED + 1, None]),
-    ("neighbourhood", "baseline", "must be true or false", [0, 1, None, "yes"]),
-    ("neighbourhood", "fallback", COUNT, [0, True, "none"]),
-    ("fixed-paths", "k", COUNT, [0, None]),
-    ("fixed-paths", "paths", 'must be "shortest" or "disjoint"', ["long", None, []]),
-]
-
-
-@pytest.mark.parametrize(("name", "option", "right", "values"), OUT_OF_RANGE)
-def test_a_value_out_of_range_is_refused(name: str, option: str, right: str, values: list[object]) -> None:
-    for value in values:
-        with pytest.raises(Refusal) as caught:
-            planner_named(name, {option: value})
-        refused = caught.value
-        assert (refused.kind, refused.path, refused.rule) == ("option", f"$.{option}", "planner/options")
-        assert refused.message == f"the {option} {right}, not {value!r}"
 
 
 def test_all_faults_of_a_planner_made_by_hand_are_told() -> None:

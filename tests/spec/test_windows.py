@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -93,18 +92,3 @@ def test_a_stay_fits_if_all_its_ticks_are_in_the_window_and_enough(
     leave = None if stays is None else enter + stays
     fits = all(tick in window for tick in ticks) and len(ticks) >= duration
     assert stay_fits(Window(start, None if lasts is None else start + lasts), enter, leave, duration) == fits
-
-
-@pytest.mark.parametrize(
-    ("end", "tick", "expected"),
-    [(5, 4, True), (5, 5, True), (5, 6, False), (5, None, False), (None, 6, True), (None, None, True)],
-)
-def test_a_window_lasts_until_its_end(end: int | None, tick: int | None, expected: bool) -> None:
-    assert Window(2, end).lasts_until(tick) == expected
-
-
-def test_a_window_of_no_ticks_is_no_free_window() -> None:
-    occupations: list[Occupation] = [(2, 3), (3, 6), (8, None)]
-    assert windows_are_free([Window(0, 2), Window(6, 8)], [(occupations, 1)])
-    for empty in (Window(4, 4), Window(4, 3)):
-        assert not windows_are_free([Window(0, 2), empty, Window(6, 8)], [(occupations, 1)])
