@@ -17,7 +17,6 @@ from carp_verify.kernel import (
     ask,
     is_answer,
     program,
-    program_is_there,
     request,
     verify_proof,
     version,
@@ -121,11 +120,6 @@ def test_what_is_no_acceptance_is_a_refusal_undecided_or_not_read() -> None:
         assert (refused.value.kind, refused.value.path, refused.value.rule) == ("document", "$.x", shown)
 
 
-def test_a_kernel_is_there_where_its_program_was_found() -> None:
-    assert program_is_there("/bin/carproof-kernel")
-    assert not program_is_there(None)
-
-
 def test_the_program_named_goes_before_the_one_built_and_this_before_the_one_on_the_path(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -148,7 +142,3 @@ def test_the_program_named_goes_before_the_one_built_and_this_before_the_one_on_
     monkeypatch.setenv(VARIABLE, str(tmp_path / "elsewhere"))
     with pytest.raises(Refusal, match="kernel/program"):
         program()
-
-
-def test_the_program_built_is_looked_for_where_make_builds_it() -> None:
-    assert Path(__file__).parents[2] / "build" / "kernel" / PROGRAM == carp_verify.kernel.BUILT

@@ -5,8 +5,8 @@ from tests.spec.making import row
 from tests.verify.tiny import TINY
 
 from carp_optimum.sat.solver import Deadline, Solver
-from carp_spec import Instance, Refusal, Resource, ResourceGraph, ResourceId, Robot, total_cost, violations_of
-from carp_verify.optimum.encoding import Encoding, Exchange, violated
+from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, total_cost, violations_of
+from carp_verify.optimum.encoding import Encoding, violated
 from carp_verify.optimum.joint_search import least_total_cost
 from carproof.testing.strategies import PlannedInstance, instances, planned_instances
 
@@ -114,23 +114,6 @@ def test_a_robot_that_is_later_than_its_horizon_has_no_plan() -> None:
     assert encoding.plans([True] * (encoding.formula.variables + 1)) == [None, None]
 
 
-def test_the_time_is_looked_at_before_each_robot() -> None:
-    looks: list[int] = []
-    Encoding(Instance(row(1, 1), (Robot("a", 0, 1), Robot("b", 1, 0))), lambda: looks.append(1))
-    assert len(looks) == 2
-
-
-def test_a_conflict_is_named_by_its_tick_and_its_resources() -> None:
-    head_on = Instance(row(1, 1), (Robot("a", 0, 1), Robot("b", 1, 0)))
-    encoding = Encoding(head_on)
-    encoding.grow_to([0, 0])
-    solver = Solver(encoding.formula, Deadline(SECONDS).check)
-    assert solver.satisfiable([])
-    plans = [plan for plan in encoding.plans(solver.model()) if plan is not None]
-    solver.close()
-    assert violated(head_on, plans) == [Exchange(1, (0, 1), (1, 0))]
-
-
 def test_a_long_stay_needs_no_more_variables_than_a_short_one() -> None:
     sizes = []
     for duration in (1, 1000):
@@ -146,20 +129,3 @@ def test_many_robots_in_a_wide_place_are_counted() -> None:
     instance = Instance(graph, tuple(Robot(i, 0, 2) for i in range(5)))
     for bound, possible in ((2, False), (3, True)):
         assert has_model(bounded(instance, [2] * 5, bound, closed=True)) == possible
-
-
-def test_conflicts_of_long_stays_are_found_without_listing_the_ticks_of_each() -> None:
-    class Counted(dict[tuple[ResourceId, int], int]):
-        reads = 0
-
-        def __getitem__(self, node: tuple[ResourceId, int]) -> int:
-            Counted.reads += 1
-            return super().__getitem__(node)
-
-    graph = ResourceGraph((Resource("a", 2), Resource("m", 2, 100), Resource("b", 2)), (("a", "m"), ("m", "b")))
-    encoding = Encoding(Instance(graph, (Robot("r", "a", "b"), Robot("s", "b", "a"))))
-    encoding.grow_to([100, 100])
-    for robot in encoding.robots:
-        robot.node = Counted(robot.node)
-    assert len(list(encoding.conflicts())) > 100
-    assert Counted.reads <= 2 * sum(len(robot.node) for robot in encoding.robots)

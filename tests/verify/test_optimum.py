@@ -42,16 +42,6 @@ def test_the_optimum_is_that_of_the_joint_search(instance: Instance) -> None:
         assert (verdict.violations, verdict.unplanned, verdict.cost) == ((), 0, best.cost)
 
 
-def test_the_same_instance_gives_the_same_solution() -> None:
-    instance = on_grid(5, *(Robot(i, f"{i},0", f"{4 - i},4") for i in range(5)), Robot(5, "4,4", "0,0"))
-    assert optimum(instance, LONG) == optimum(instance, LONG)
-
-
-def test_nobody_costs_nothing() -> None:
-    best = optimum(on_grid(2), LONG)
-    assert (best.cost, best.decided) == (0, True)
-
-
 @pytest.mark.parametrize(
     ("instance", "reason"),
     [

@@ -7,8 +7,6 @@ import pytest
 from docs.trusted_base import CHECK, KERNEL, VERDICTS, module_file
 from tests.verify.kernel_mutants import mutants, mutated
 
-OURS = r"(?:carp_verify|carp_spec(?=\.documents))"
-
 
 def kernel_lines(path: Path) -> list[str]:
     """The lines of a file in Coq or OCaml that hold more than a comment; comments may be nested."""
