@@ -10,7 +10,6 @@ from tests.optimized.towns import TOWNS
 
 import carp_optimized
 import carp_reference
-from carp_optimized.__main__ import compile_all
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.neighbourhood.distances import term
 from carp_optimized.state import encoding
@@ -57,10 +56,6 @@ def test_progress_is_never_more_than_all_steps(planner: Planner) -> None:
     carp_optimized.plan(instance, planner, lambda: advanced.append(None))
     assert len(advanced) <= carp_optimized.steps(instance, planner)
     assert bool(advanced) == (planner not in (Carp(), LongestFirst()))
-
-
-def test_what_an_installation_calls_runs() -> None:
-    compile_all()
 
 
 def test_rows_of_windows_grow() -> None:
@@ -171,13 +166,6 @@ def test_a_goal_that_is_too_far_is_refused(last: int) -> None:
     for planner in PLANNERS:
         with pytest.raises(Refusal, match="the reference engine has no such limit"):
             carp_optimized.plan(Instance(far, (Robot("r", "a", "c"),)), planner)
-
-
-def test_options_that_differ_only_in_what_follows_share_their_arrays() -> None:
-    fleet = PlannedFleet(grid_instance(Grid(4, 4), Fleet(3)))
-    for robot, options in enumerate((Neighbourhood(m=3), Neighbourhood(m=3, seed=1), Neighbourhood(m=2))):
-        assert fleet.add(robot, 0, options)
-    assert fleet.order == (0, 1, 2)
 
 
 def test_robots_whose_plans_have_ended_are_left_alone() -> None:

@@ -71,38 +71,6 @@ def test_a_query_does_the_same_without_plans_that_are_no_reasons(under_way: Flee
     assert record == NONE or again._plan(repeated) == fleet._plan(record)
 
 
-def test_a_plan_in_the_way_is_a_reason_and_one_that_has_passed_or_is_elsewhere_is_none() -> None:
-    line = tuple(Resource(cell) for cell in "abcdxy")
-    graph = ResourceGraph(line, (("a", "b"), ("b", "c"), ("c", "d"), ("x", "c"), ("x", "y")))
-    robots = (
-        Robot("r", "a", "d", 4),
-        Robot("in the way", "c", "x"),
-        Robot("passed", "c", "b"),
-        Robot("elsewhere", "x", "y"),
-    )
-    plans = (
-        Plan("passed", (Visit("c", 0, 1), Visit("b", 1, 2))),
-        Plan("in the way", (Visit("c", 5, 9), Visit("x", 9, 10))),
-        Plan("elsewhere", (Visit("x", 0, 1), Visit("y", 1, 2))),
-    )
-    fleet = fleet_of(Instance(graph, robots, "vanish"), plans)
-    for latest in (NEVER, 9, 7):
-        record, _ = asked(fleet, 0, None, 0, latest)
-        assert (record == NONE) == (latest < NEVER)
-        assert reasons_among(fleet, 0, record, latest, plans) == [plans[1]]
-
-
-def test_a_plan_that_passes_the_goal_later_is_a_reason_for_a_robot_that_parks_there() -> None:
-    graph = ResourceGraph(tuple(Resource(cell) for cell in "abcy"), (("a", "b"), ("b", "c"), ("c", "y")))
-    instance = Instance(graph, (Robot("r", "a", "c"), Robot("passes", "y", "y")), "park")
-    plan = Plan("passes", (Visit("y", 0, 20), Visit("c", 20, 21), Visit("y", 21, None)))
-    fleet = fleet_of(instance, [plan])
-    for latest in (NEVER, 15, 2):
-        record, _ = asked(fleet, 0, None, 0, latest)
-        assert (record == NONE) == (latest < NEVER)
-        assert reasons_among(fleet, 0, record, latest, [plan]) == [plan]
-
-
 @pytest.mark.parametrize(("following", "waits"), [("allowed", 0), ("forbidden", 1)])
 def test_a_plan_that_leaves_as_the_robot_comes_is_a_reason_where_following_is_forbidden(
     following: Following, waits: int

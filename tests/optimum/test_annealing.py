@@ -3,13 +3,11 @@
 from collections.abc import Callable
 from itertools import count, pairwise
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from carp_optimized import plan, polish
 from carp_optimized.fleet import PlannedFleet
-from carp_optimized.improve import annealing
 from carp_optimized.improve.annealing import anneal
 from carp_optimized.improve.repair import repair
 from carp_optimized.neighbourhood.polishing import CHANCE
@@ -75,28 +73,6 @@ def test_robots_that_share_a_lane_in_both_directions_learn_to_take_turns() -> No
         polishing.fields.counts[CHANCE] = 1
         fleet.polish(polishing, 200)
         assert fleet.worth == (0, 440)
-
-
-def test_the_best_plans_seen_are_the_result(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(annealing, "HEAT", 10_000)
-    instance = grid_instance(Grid(8, 8, map=8), Fleet(robots=24, seed=1))
-    given = polish(instance, plan(instance, Carp()), iterations=ROUNDS)
-    seen: list[tuple[int, int, int]] = []
-    annealed = anneal(instance, given, 9, clock=ticking(), advance=lambda *at: seen.append(at))
-    assert worth(annealed, instance) == seen[-1][1:] <= worth(given, instance)
-    assert [rounds for rounds, _, _ in seen[:3]] == [50, 100, 150]
-
-
-def test_no_heat_gives_the_plans_of_a_polish(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(annealing, "HEAT", 0)
-    monkeypatch.setattr(annealing, "REHEAT", 0)
-    instance = grid_instance(Grid(8, 8, map=8), Fleet(robots=24, seed=1))
-    monkeypatch.setattr(annealing, "settle", lambda *_: False)
-    given = plan(instance, Carp())
-    played: list[int] = []
-    annealed = anneal(instance, given, 9, seed=5, clock=ticking(), advance=lambda *at: played.append(at[0]))
-    assert played[-1] >= 150
-    assert annealed == polish(instance, given, iterations=played[-1], seed=5)
 
 
 def test_a_time_ends_by_the_clock_and_robots_left_out_are_planned_first() -> None:

@@ -109,17 +109,6 @@ def test_the_bound_of_all_parts_together_is_below_the_optimum_and_above_the_shor
     assert Branching(instance, least.shortest, nothing).least_of_all() == least.shortest + 1
 
 
-def test_robots_that_must_turn_in_a_ring_are_planned_together() -> None:
-    """All four corners move on by one, which no two robots can do alone; the fifth robot is in nobody's way."""
-    ring = [("a", "b"), ("b", "c"), ("c", "d"), ("d", "a"), ("d", "e")]
-    graph = ResourceGraph(tuple(map(Resource, "abcde")), tuple(ring))
-    robots = [Robot(start, start, goal) for start, goal in (("a", "b"), ("b", "c"), ("c", "d"), ("d", "a"), ("e", "e"))]
-    search = searched(Instance(graph, tuple(robots), "vanish"), 9)
-    assert search.least == 4
-    assert search.plans is not None
-    assert [plan.visits[-1].enter for plan in search.plans] == [1, 1, 1, 1, 0]
-
-
 def test_crowds_are_robots_that_vanish_and_stand_on_most_resources() -> None:
     assert is_crowded(grid_instance(Grid(6, 6, 20), Fleet(25, 0)))
     assert not is_crowded(grid_instance(Grid(6, 6, 20), Fleet(24, 0)))

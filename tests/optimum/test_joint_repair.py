@@ -38,12 +38,6 @@ def test_two_robots_that_swap_at_a_pocket_are_planned_jointly(following: Followi
         assert judge(instance, repaired).valid
 
 
-def test_robots_that_cannot_swap_stay_as_they_are() -> None:
-    instance = passage(pocket=False)
-    given = plan(instance, Carp())
-    assert repair(instance, given) == given
-
-
 def test_a_robot_that_no_small_group_helps_is_planned_in_another_order() -> None:
     instance = grid_instance(Grid(map=0), Fleet(robots=100, seed=45))
     repaired = repair(instance, plan(instance))
@@ -59,14 +53,6 @@ def test_a_repair_that_goes_on_no_more_ends_with_plans_that_are_no_worse(looks: 
     repaired = repair(instance, given, lambda: next(asked) < looks)
     assert judge(instance, repaired).valid
     assert len(repaired.unplanned) <= len(given.unplanned)
-
-
-def test_a_repair_without_time_changes_nothing() -> None:
-    instance = grid_instance(Grid(map=0), Fleet(robots=100, seed=45))
-    given = plan(instance, Carp())
-    assert len(plan_failed_first(instance, given).unplanned) < len(given.unplanned)
-    assert plan_failed_first(instance, given, lambda: False) == given
-    assert repair(instance, given, lambda: False) == given
 
 
 def test_robots_that_failed_are_planned_first_and_a_robot_without_path_changes_nothing() -> None:

@@ -3,7 +3,6 @@
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from pysat.solvers import Cadical195
 from tests.profiles import draws
 from tests.verify.bound_examples import completed
 from tests.verify.tiny import TINY
@@ -105,21 +104,3 @@ def test_the_certificate_s_deadlines_count(seed: int, after_goal: AfterGoal) -> 
         assert min(bound.reduced(robot, shortest, least + 6).delays.values()) == 0
     assert cheapest(instance, bound, least) == least
     assert cheapest(instance, bound, least - 1) is None
-
-
-def test_at_the_bound_one_robot_of_each_group_with_deadlines_is_late_and_no_second_one_if_that_is_too_dear() -> None:
-    instance = town(7, "park")
-    bound = PricedBound(instance, lower_bound(instance, steps=1500, seen=False))
-    encoding = priced_formula(instance, bound, bound.certificate.bound, lambda: None).encoding
-    clauses = {robot.robot.id: robot for robot in encoding.robots}
-    solver = Cadical195(bootstrap_with=encoding.formula.clauses)
-    dear = 0
-    for group in bound.certificate.deadlines:
-        entries = [(clauses[name], tick) for name, tick in zip(group.robots, group.ticks, strict=True)]
-        late = [robot.later_than(tick - robot.earliest) for robot, tick in entries]
-        assert not solver.propagate([-literal for literal in late])[0]
-        if group.price > bound.gap(bound.certificate.bound):
-            dear += 1
-            assert not solver.propagate(late[:2])[0]
-    solver.delete()
-    assert dear > 0

@@ -64,13 +64,6 @@ def test_rounds_improve_a_crowd_and_its_best_total_never_rises(after_goal: After
     assert 2 * seen[-1] < total_cost(instance, first) + seen[0]
 
 
-def test_robots_that_no_order_plans_get_plans() -> None:
-    instance = crowd(8, 60)
-    found = plan_crowd(instance, iterations=10, seconds=None)
-    assert not found.unplanned
-    assert judge(instance, found).valid
-
-
 @pytest.mark.parametrize(
     ("side", "robots", "seconds"), [(8, 20, 0.3), (40, 300, 0.5), (70, 1500, 1.5), (90, 3000, 0.2)]
 )
