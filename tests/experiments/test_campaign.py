@@ -137,13 +137,6 @@ def test_a_lost_worker_is_told_and_the_run_can_go_on(tmp_path: Path) -> None:
         assert len(store.keys()) == len(CASES)
 
 
-def test_a_store_of_another_campaign_is_refused(tmp_path: Path) -> None:
-    with open_store(tmp_path / "store", "squares"):
-        pass
-    with pytest.raises(Refusal, match="it holds the results of another campaign, squares by carproof"):
-        Store(tmp_path / "store", "cubes")
-
-
 def test_a_file_that_is_no_store_is_refused_and_left_as_it_is(tmp_path: Path) -> None:
     path = tmp_path / "notes.txt"
     path.write_text("these are my notes, not a database\n" * 100)

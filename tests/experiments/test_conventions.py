@@ -12,14 +12,12 @@ from carp_experiments.paper.conventions import (
     DIVISORS,
     Convention,
     add_robot,
-    drawn_robots,
     ints,
     meetings_of,
     one_pass,
     remaining_row,
     world_of,
 )
-from carp_experiments.paper.drawn_maps import drawn_tree, grid_edges
 from carp_experiments.paper.map_cases import MapCase, instance_of
 from carp_experiments.recomputed import plans_of
 from carp_optimized import query
@@ -76,27 +74,6 @@ def test_robots_that_stay_keep_their_goals_free_of_others() -> None:
         assert all(world.occupant[arrival : arrival + 6, world.goal[robot]] == robot)
 
 
-def test_ends_repeat_where_the_convention_says_so() -> None:
-    case = replace(CASE, robots=100)
-    for convention, repeats in {
-        Convention(): (False, False),
-        Convention(goals_repeated=True): (False, True),
-        Convention(repeated=True): (True, True),
-    }.items():
-        starts, goals, _ = zip(*drawn_robots(case, convention), strict=True)
-        assert tuple(len(set(ends)) < case.robots for ends in (starts, goals)) == repeats
-
-
-@pytest.mark.parametrize("is_depth_first", [True, False])
-def test_a_tree_spans_the_map_without_a_circle(is_depth_first: bool) -> None:
-    tree = drawn_tree(grid_edges(), is_depth_first, splitmix64(7))
-    assert len(tree) == 20 * 20 - 1
-    reached = {0}
-    while more := {end for edge in tree if reached & set(edge) for end in edge} - reached:
-        reached |= more
-    assert len(reached) == 20 * 20
-
-
 def test_a_robot_that_finds_no_plan_keeps_its_own_and_meets_another() -> None:
     """Planned again in the opposite order, some find no plan; what they keep is in the way of somebody before them."""
     kept_in_all = 0
@@ -119,13 +96,6 @@ def test_a_robot_that_finds_no_plan_keeps_its_own_and_meets_another() -> None:
             world.arrival[robot] = after[robot]
         assert kept == 0
     assert kept_in_all > 0
-
-
-def test_robots_that_swap_places_meet() -> None:
-    world = world_of(CASE, Convention())
-    for robot, cells in enumerate([(0, 1), (1, 0), (2, 3)]):
-        world.path[robot, :2], world.entered[robot], world.arrival[robot] = cells, 0, 1
-    assert meetings_of(world, range(3)) == 1
 
 
 @pytest.mark.parametrize("divisor", DIVISORS)

@@ -4,7 +4,7 @@ import pytest
 
 import carp_optimized
 from carp_experiments.measuring.crosscheck_campaign import CROSSCHECKS, Block, Kind, ask_both
-from carp_spec import Instance, Neighbourhood, Planner, Refusal, ResourceGraph, Solution, judge
+from carp_spec import Instance, Neighbourhood, Planner, ResourceGraph, Solution, judge
 from carp_spec.instance_rules import instance_faults
 from carproof.testing.random_instances import question
 
@@ -70,14 +70,3 @@ def test_a_planted_difference_is_told_with_its_question(monkeypatch: pytest.Monk
     assert not report.holds
     assert "A DIFFERENCE" in report.lines[0]
     assert '"question"' in report.lines[0]
-
-
-def test_an_engine_that_fails_differs(monkeypatch: pytest.MonkeyPatch) -> None:
-    def refusing(instance: Instance, planner: Planner) -> Solution:
-        del instance, planner
-        raise Refusal("limit", "$", "limit/ticks", "too much")
-
-    monkeypatch.setattr(carp_optimized, "plan", refusing)
-    report = CROSSCHECKS[None].report(case.run() for case in CROSSCHECKS[None].cases(30, seed=0))
-    assert not report.holds
-    assert "too much" in report.lines[0]

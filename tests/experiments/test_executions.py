@@ -14,7 +14,7 @@ from carp_experiments.beyond.delayed import (
     execution_row,
 )
 from carp_experiments.beyond.following import FollowingOf, following_figures, following_report, following_row
-from carp_experiments.beyond.people import PeopleOf, PeopleRow, people_report, people_row
+from carp_experiments.beyond.people import PeopleRow, people_row
 from carp_experiments.paper.map_cases import FULL_MAP, WAREHOUSE, MapCase
 from carp_experiments.store import Row, digest_of
 
@@ -68,13 +68,3 @@ def test_people_are_first_and_robots_pay() -> None:
     assert len(reported.people) == 10
     assert all(person.proved and person.delay == 0 for person in reported.people)
     assert any(person.replanned for person in reported.people)
-
-
-def test_people_without_a_new_plan_are_counted_apart() -> None:
-    first = {"delay": 0, "proved": True, "replanned": 4, "stuck": 0, "extra": 6, "pushed": 0}
-    unserved = {"delay": None, "proved": False, "replanned": 0, "stuck": 1, "extra": 6, "pushed": 2}
-    row = {"map": 20, "people": [first, unserved], "measured": [10, 20]}
-    one, two = msgspec.convert(people_report([row], 60).summary, tuple[PeopleOf, ...])
-    assert (one.people, one.first, one.unserved, one.replanned.estimate) == (1, 1, 0, 4)
-    assert (two.people, two.first, two.unserved, two.delay, two.stuck) == (2, 1, 1, 0, 1)
-    assert (two.replanned.estimate, two.extra.estimate, two.pushed.estimate, two.milliseconds.estimate) == (2, 6, 2, 15)

@@ -1,7 +1,6 @@
 """Streams of pick-and-drop orders: what is drawn, and what the table says."""
 
 import msgspec
-import pytest
 
 from carp_experiments.beyond.lifelong import (
     PLANNERS,
@@ -33,16 +32,6 @@ def test_each_planner_serves_all_orders_at_each_rate() -> None:
     summary = msgspec.convert(lifelong_report([row], 8).summary, tuple[LifelongOf, ...])
     assert [(each.rate, each.planner) for each in summary] == [(rate, name) for rate in RATES for name in PLANNERS]
     assert all(each.taken.estimate > SERVICE for each in summary)
-
-
-def test_a_mean_counts_the_orders_of_all_streams() -> None:
-    streams = [{"half": half, "taken": taken, "microseconds": 16_000} for half, taken in ((4, 80), (8, 160))]
-    rows = [{"map": 20, "planners": {name: [each] * len(RATES) for name in PLANNERS}} for each in streams]
-    first = msgspec.convert(lifelong_report(rows, 8).summary, tuple[LifelongOf, ...])[0]
-    assert first.streams == 2
-    assert first.throughput.estimate == pytest.approx(75)
-    assert first.taken.estimate == pytest.approx(15)
-    assert first.milliseconds.estimate == pytest.approx(2)
 
 
 def test_the_sorting_centre_is_laid_out_as_published_and_all_its_cells_can_be_left() -> None:

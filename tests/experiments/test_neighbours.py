@@ -33,11 +33,3 @@ def test_polish_has_the_time_of_the_planner_and_no_more() -> None:
     found = helped(5, "plain", 4, [row(196), row(192)])
     assert (found.saved.estimate, found.polished.estimate, found.more.estimate) == pytest.approx((3, 10, 7))
     assert found.times == pytest.approx(10)
-
-
-@pytest.mark.ci
-def test_every_planner_plans_every_kind() -> None:
-    row = CASE.run()
-    totals = row["totals"]
-    assert isinstance(totals, dict)
-    assert totals.keys() == KINDS.keys()

@@ -9,7 +9,6 @@ import carp_optimized
 import carp_reference
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
 from carp_experiments.paper import polishing
-from carp_experiments.paper.adding_time import time_row
 from carp_experiments.paper.claims import related_claims, reuse_claims
 from carp_experiments.paper.map_cases import MapCase, instance_of
 from carp_experiments.paper.related_work import FIXED, METHODS, Related, related_report, related_row
@@ -18,12 +17,6 @@ from carp_experiments.paper.small_gaps import COMPARED, POLISHED, GapRow, gap_re
 from carp_experiments.statistics import Interval
 from carp_experiments.store import digest_of
 from carp_spec import Carp, FixedPaths, Greedy, LongestFirst, Planner, plan_cost
-
-
-def test_times_are_measured_and_do_not_count_in_the_digest() -> None:
-    rows = [MapCase(time_row, 15, 0, 6).run() for _ in range(2)]
-    assert rows[0]["measured"] != rows[1]["measured"]
-    assert digest_of(rows[0]) == digest_of(rows[1])
 
 
 def test_queries_are_told_apart_by_what_they_are_for() -> None:
@@ -154,20 +147,6 @@ def test_what_a_polish_reaches_on_its_way_is_what_a_shorter_one_reaches() -> Non
         for length in lengths
     ]
     assert after[0] != after[-1]
-
-
-def test_polish_is_summed_up_over_the_assignments_that_do_not_fail() -> None:
-    reached = {**dict.fromkeys(polishing.METHODS, (5, 110)), polishing.LONGEST: (5, 100)}
-    failed = {**reached, "Proposed_4": (3, 40)}
-    measured = {"bound": 2_000_000_000, "Proposed_4": 500_000_000}
-    rows = [
-        {"map": 7, "shortest": 80, "bound": 100, "results": results, "measured": measured}
-        for results in (reached, failed)
-    ]
-    gaps, bounds, failures = polishing.polish_report(rows, 5).tables
-    assert gaps.rows == (("7", *["110: 10.00"] * 2, "100: 0.00", *["110: 10.00"] * 2),)
-    assert bounds.rows == (("7", "80", "100", "25.00", "2/2", "2/2", "2.0", "0.5"),)
-    assert failures.rows == (("7", "1/2 (1.00)", *["0/2 (0.00)"] * 4),)
 
 
 @pytest.mark.parametrize("experiment", EXPERIMENTS, ids=lambda experiment: experiment.name)

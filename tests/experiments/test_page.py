@@ -5,7 +5,7 @@ import re
 import pytest
 
 from carp_experiments.page import RESULTS, claims_of, read_run, results
-from carp_experiments.paper.claims import above_zero, below_zero, up_to, verdict_of
+from carp_experiments.paper.claims import up_to
 from carp_experiments.paper.quality import Saving
 from carp_experiments.statistics import Interval
 
@@ -22,27 +22,6 @@ def test_what_is_reproduced_in_part_has_its_reason_beside_it() -> None:
         assert bool(claim.reason) == (claim.verdict == "in part")
         assert bool(claim.reason_with_baseline) == (claim.with_baseline == "in part")
         assert all(f": {reason} |" in results() for reason in (claim.reason, claim.reason_with_baseline) if reason)
-
-
-@pytest.mark.parametrize(
-    ("parts", "verdict"),
-    [
-        ([True, True], "reproduced"),
-        ([True, None], "in part"),
-        ([True, False], "in part"),
-        ([None, False], "undecided"),
-        ([False, False], "not reproduced"),
-    ],
-)
-def test_a_claim_of_several_parts(parts: list[bool | None], verdict: str) -> None:
-    assert verdict_of(parts) == verdict
-
-
-def test_an_interval_that_holds_zero_says_nothing() -> None:
-    assert above_zero(Interval(1, -1, 3)) is None
-    assert above_zero(Interval(2, 1, 3)) is True
-    assert below_zero(Interval(2, 1, 3)) is False
-    assert below_zero(Interval(-2, -3, -1)) is True
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,6 @@ from carp_experiments.beyond.streams import (
     RATES,
     StreamOf,
     StreamRow,
-    middle_half,
     stream_figures,
     stream_instance,
     stream_report,
@@ -15,8 +14,6 @@ from carp_experiments.beyond.streams import (
     streamed,
 )
 from carp_experiments.paper.map_cases import FULL_MAP, WAREHOUSE, MapCase
-from carp_optimized.fleet import PlannedFleet
-from carp_spec import Neighbourhood, Plan, Visit, check_update
 from carp_spec.instance_rules import instance_faults
 
 SMALL = MapCase(stream_row, FULL_MAP, 1, 120)
@@ -40,25 +37,6 @@ def test_every_robot_gets_a_plan_and_a_higher_rate_makes_robots_wait() -> None:
         assert slow.shortest == fast.shortest
         assert slow.shortest <= slow.taken < fast.taken
         assert slow.half > fast.half
-
-
-def test_who_comes_changes_no_history_and_neighbours_make_room() -> None:
-    case = MapCase(stream_row, 10, 2, 150)
-    instance = stream_instance(case, 1200)
-    fleet, changed = PlannedFleet(instance), 0
-    for place, robot in enumerate(instance.robots):
-        before = fleet.plans
-        assert fleet.add(place, robot.release, Neighbourhood(m=4))
-        assert check_update(before, fleet.plans, robot.release) == ()
-        changed += not {*before} <= {*fleet.plans}
-    assert changed > 10
-    first, second = (streamed(case, name, 1200) for name in PLANNERS)
-    assert second.taken < first.taken
-
-
-def test_the_middle_half_is_between_the_quarters() -> None:
-    plans = [Plan(tick, (Visit("a", 0, tick), Visit("b", tick, tick + 1))) for tick in (70, 10, 20, 30, 40, 50, 60, 80)]
-    assert middle_half(plans) == 70 - 30
 
 
 def test_the_report_has_the_throughput_of_each_rate() -> None:
