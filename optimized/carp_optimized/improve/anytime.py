@@ -20,8 +20,7 @@ from carp_optimized.improve.holding import plan_holding_starts
 from carp_optimized.improve.planning import Found, plan_crowd, time_of_visit
 from carp_optimized.improve.repair import plan_failed_first
 from carp_optimized.improve.settling import settled
-from carp_spec import Instance, Solution, total_cost
-from carp_spec.documents.solutions import visits_document
+from carp_spec import Instance, Solution
 from carp_spec.inputs.options import require_polish_options
 from carp_spec.inputs.values import require_instance
 
@@ -51,21 +50,20 @@ def plan_within(
     compilation of the planner, which happens once, is not part of the time: `python -m carp_optimum` makes it happen.
     Raises `Refusal` for wrong options, and for numbers that are too large.
     """
-    found = find_within(instance, Found.solution, iterations, seconds, seed=seed, advance=advance, clock=clock)
-    return found.solution()
+    return find_within(instance, iterations, seconds, seed=seed, advance=advance, clock=clock).solution
 
 
 def find_within(
     instance: Instance,
-    finish: Callable[[Found], object],
     iterations: int | None,
     seconds: float | None,
     *,
     seed: int = 0,
     advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
     clock: Callable[[], float] = perf_counter,
+    finish: Callable[[Solution], object] = lambda _: None,
 ) -> Found:
-    """The same, where the caller has to `finish` within the seconds."""
+    """The same, where the caller then has to `finish` with the solution within the seconds."""
     require_instance(instance)
     require_polish_options(iterations, seconds, seed)
     if iterations is None and seconds is None:
@@ -76,11 +74,11 @@ def find_within(
     )
     if found is not None:
         return found
-    visit = 0.0 if seconds is None or not instance.robots else time_of_visit(instance, finish, clock)
+    visit = 0.0 if seconds is None or not instance.robots else time_of_visit(instance, clock, finish)
     solution = _first_plans(instance, lambda: clock() - started, seconds, visit)
     if seconds is None:
         solution = carp_optimized.polish(instance, solution, iterations=iterations, seed=seed, advance=advance)
-        return _found(instance, settled(instance, solution))
+        return Found(settled(instance, solution), None)
     spent = clock() - started
     left = seconds - visit * sum(len(each.visits) for each in solution.plans)
     if left > (1 + ENOUGH) * spent:
@@ -89,7 +87,7 @@ def find_within(
         if solution.unplanned:
             solution = plan_failed_first(instance, solution, lambda: 2 * (clock() - started) < left + spent)
         solution = settled(instance, solution, lambda: clock() - started < left)
-    return _found(instance, solution)
+    return Found(solution, None)
 
 
 def _first_plans(instance: Instance, spent: Callable[[], float], seconds: float | None, visit: float) -> Solution:
@@ -124,13 +122,3 @@ def nearest_first(fleet: PlannedFleet, goes_on: Callable[[], bool]) -> list[int]
             return [int(each) for each in np.argsort(about, kind="stable")]
         ways.append(fleet.ticks_to_goal(robot))
     return sorted(range(len(ways)), key=ways.__getitem__)
-
-
-def _found(instance: Instance, solution: Solution) -> Found:
-    """The solution as something found."""
-    return Found(
-        instance,
-        lambda: ((each.robot, visits_document(each)) for each in solution.plans),
-        total_cost(instance, solution.plans),
-        None,
-    )

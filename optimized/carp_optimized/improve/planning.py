@@ -19,7 +19,6 @@ their starts.
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import starmap
 from math import inf
 from time import perf_counter
 
@@ -32,12 +31,11 @@ from carp_optimized.improve.improving import LONGER, Improving, arrivals, paths_
 from carp_optimized.improve.lacam import RUNNING, STEPS, Search
 from carp_optimized.improve.rounds import SURE
 from carp_optimized.improve.stays import Paths, no_paths
-from carp_optimized.jit.kinds import Ints, IntTable
+from carp_optimized.jit.kinds import IntTable
 from carp_optimized.jit.references import Native
 from carp_optimized.state.arrays import NO_LIMIT
-from carp_spec import Instance, Plan, Robot, RobotId, Solution, Visit
+from carp_spec import Instance, Plan, Robot, Solution, Visit
 from carp_spec.documents.decoding import without_collection
-from carp_spec.documents.solutions import SOLUTION_FORMAT, PlanDocument, SolutionDocument, VisitDocument
 
 Advance = Callable[[int, int, int], None]
 
@@ -106,46 +104,27 @@ class Clock:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """What a search has found: the visits of robots that have plans, and the sum of their costs.
+    """What a search has found: a solution, and the sum of costs if each robot with a plan were alone, where known."""
 
-    `shortest` is the sum if each were alone, where it is known.
-    """
-
-    instance: Instance
-    rows: Callable[[], Iterator[tuple[RobotId, Iterable[VisitDocument]]]]
-    total: int
+    solution: Solution
     shortest: int | None
 
-    def solution(self) -> Solution:
-        """The plans."""
-        with without_collection():
-            plans = (Plan(robot, tuple(starmap(Visit, visits))) for robot, visits in self.rows())
-            return Solution.of(self.instance, plans)
 
-    def document(self) -> SolutionDocument:
-        """The document of that solution, without the solution."""
-        with without_collection():
-            plans = {robot: PlanDocument(robot, tuple(visits)) for robot, visits in self.rows()}
-            unplanned = tuple(each.id for each in self.instance.robots if each.id not in plans)
-            return SolutionDocument(SOLUTION_FORMAT, tuple(plans.values()), tuple(plans), unplanned)
-
-
-def found_along(instance: Instance, robots: Iterable[Robot], paths: Paths, least: Ints) -> Found:
-    """The paths of robots, and the least ticks that each needs; a row without visits is no path."""
+def solution_along(instance: Instance, robots: Iterable[Robot], paths: Paths) -> Solution:
+    """The plans of robots along their paths; a row without visits is no path."""
     names = [each.id for each in instance.graph.resources]
     parks = instance.after_goal == "park"
-    sizes = paths.size.tolist()
-    has_path = paths.size > 0
 
-    def rows() -> Iterator[tuple[RobotId, Iterable[VisitDocument]]]:
-        for row, (robot, size) in enumerate(zip(robots, sizes, strict=True)):
+    def plans() -> Iterator[Plan]:
+        for row, (robot, size) in enumerate(zip(robots, paths.size.tolist(), strict=True)):
             if size > 0:
                 enters: list[int] = paths.enter[row, :size].tolist()
                 leaves = [*enters[1:], None if parks else enters[-1] + 1]
-                places = paths.place[row, :size].tolist()
-                yield robot.id, zip(map(names.__getitem__, places), enters, leaves, strict=True)
+                places = map(names.__getitem__, paths.place[row, :size].tolist())
+                yield Plan(robot.id, tuple(map(Visit, places, enters, leaves)))
 
-    return Found(instance, rows, int(arrivals(paths)[has_path].sum()), int(least[has_path].sum()))
+    with without_collection():
+        return Solution.of(instance, plans())
 
 
 def plan_crowd(
@@ -156,7 +135,7 @@ def plan_crowd(
     seed: int = 0,
     advance: Advance = lambda _, __, ___: None,
     clock: Callable[[], float] = perf_counter,
-    finish: Callable[[Found], object] = Found.solution,
+    finish: Callable[[Solution], object] = lambda _: None,
 ) -> Found | None:
     """Paths for as many robots as possible, by that many rounds or in that many seconds.
 
@@ -170,14 +149,15 @@ def plan_crowd(
     crowd = crowd_of(instance)
     apart = are_apart(crowd)
     rows, crowd = np.flatnonzero(apart), only(crowd, apart)
-    timer.visit = time_of_visit(instance, finish, clock)
+    timer.visit = time_of_visit(instance, clock, finish)
     is_measured = _measured(crowd, timer)
     if is_measured:
         has_way = ways_of(crowd) < FAR
         rows, crowd = rows[has_way], only(crowd, has_way)
     paths = _paths(crowd, timer, is_measured, iterations, seed, advance)
     require_lawful(crowd, paths)
-    return found_along(instance, [instance.robots[row] for row in rows], paths, ways_of(crowd))
+    solution = solution_along(instance, [instance.robots[row] for row in rows], paths)
+    return Found(solution, int(ways_of(crowd)[paths.size > 0].sum()))
 
 
 def improve_crowd(
@@ -194,14 +174,14 @@ def improve_crowd(
     if len(solution.plans) < len(instance.robots) or not is_stepwise(instance) or not instance.robots:
         return None
     crowd = crowd_of(instance)
-    timer.visit = time_of_visit(instance, Found.solution, clock)
+    timer.visit = time_of_visit(instance, clock)
     paths = _paths_of_plans(instance, solution)
     timer.reserve(int(paths.size.sum()))
     if not _measured(crowd, timer):
         return solution
     paths = improved(crowd, [paths], None, timer, seed, advance)
     require_lawful(crowd, paths)
-    return found_along(instance, instance.robots, paths, ways_of(crowd)).solution()
+    return solution_along(instance, instance.robots, paths)
 
 
 def _paths_of_plans(instance: Instance, solution: Solution) -> Paths:
@@ -382,12 +362,13 @@ def _chance(heated: int, robots: int, rounds: int, left: int) -> int:
     return SURE * mean // (mean + 16 * robots * enough**2 * PARTS**3)
 
 
-def time_of_visit(instance: Instance, finish: Callable[[Found], object], clock: Callable[[], float]) -> float:
-    """The seconds that it takes to check a path, for each visit, and to do with it what is done at the end."""
+def time_of_visit(
+    instance: Instance, clock: Callable[[], float], finish: Callable[[Solution], object] = lambda _: None
+) -> float:
+    """The seconds that it takes to check a path, to make its plan and to finish with it, for each visit."""
     ticks = np.arange(SAMPLE, dtype=np.int32)[np.newaxis]
     paths = Paths(np.full(1, SAMPLE, np.int32), 0 * ticks, ticks)
-    sample = found_along(instance, instance.robots[:1], paths, ticks[0, :1])
-    finish(sample)  # the first time takes longer
+    finish(solution_along(instance, instance.robots[:1], paths))  # the first time takes longer
     started = clock()
-    finish(sample)
+    finish(solution_along(instance, instance.robots[:1], paths))
     return SLOWER * (clock() - started) / SAMPLE

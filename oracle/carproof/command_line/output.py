@@ -40,9 +40,11 @@ def show_solution(
     show_unplanned(instance, solution, solution.unplanned, fleet=fleet)
 
 
-def show_found(instance: Instance, found: "Found", unplanned: Sequence[RobotId], planner: str, seconds: float) -> None:
+def show_found(instance: Instance, found: "Found", planner: str, seconds: float) -> None:
     """Print what was found within a time, in no time: of robots that are left out nobody asks why."""
-    _show_row(instance, planner, len(unplanned), found.total, found.shortest, seconds)
+    unplanned = found.solution.unplanned
+    total = total_cost(instance, found.solution.plans)
+    _show_row(instance, planner, len(unplanned), total, found.shortest, seconds)
     for robot in unplanned[:MOST_LISTED]:
         print_line(f"unplanned: robot {robot}: no plan was found for it in this time")
     if len(unplanned) > MOST_LISTED:

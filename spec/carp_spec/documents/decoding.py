@@ -149,9 +149,12 @@ def has_shape(data: bytes, kind: type[msgspec.Struct]) -> bool:
     return _shape_error(data, kind) is None
 
 
-def decode(data: bytes, kind: type[D], format: str) -> D:
-    """Decode a document of the kind, or raise `Refusal` with its first error."""
-    document = decode_quickly(data, kind, has_defaults=True)
+def decode(data: bytes, kind: type[D], format: str, exact: type[D] | None = None) -> D:
+    """Decode a document of the kind, or raise `Refusal` with its first error.
+
+    `exact` is a kind of the same documents that names errors more exactly. With it, `kind` has no defaults but `UNSET`.
+    """
+    document = decode_quickly(data, kind, has_defaults=exact is None)
     if document is not None:
         return document
     require_json(data)
@@ -159,7 +162,7 @@ def decode(data: bytes, kind: type[D], format: str) -> D:
     if found != format:
         instead = f", and is {found}" if found and found.isprintable() and len(found) <= MOST_DIGITS else ""
         raise Refusal("document", "$.format", has_format.id, f"the format must be {format}{instead}")
-    wrong = _shape_error(data, kind)
+    wrong = _shape_error(data, exact or kind)
     if wrong is not None:
         raise Refusal("document", wrong[0], has_shape.id, wrong[1])
     return msgspec.json.decode(data, type=kind)

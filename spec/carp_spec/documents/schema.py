@@ -16,7 +16,7 @@ from carp_spec.documents.bounds import BoundDocument
 from carp_spec.documents.grants import GrantsDocument
 from carp_spec.documents.instances import InstanceDocument, RobotDocument
 from carp_spec.documents.query_certificates import QueryCertificateDocument
-from carp_spec.documents.solutions import SolutionDocument, TraceDocument
+from carp_spec.documents.solutions import EXACT_SOLUTION, EXACT_TRACE
 from carp_spec.documents.vectors import VectorsDocument
 from carp_spec.documents.verdicts import VerdictDocument
 
@@ -24,11 +24,11 @@ FOLDER = Path(carp_spec.__file__).with_name("schemas")
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 DOCUMENTS: Mapping[str, type[msgspec.Struct]] = {
     "instance": InstanceDocument,
-    "solution": SolutionDocument,
+    "solution": EXACT_SOLUTION,
     "verdict": VerdictDocument,
     "bound": BoundDocument,
     "query": QueryCertificateDocument,
-    "trace": TraceDocument,
+    "trace": EXACT_TRACE,
     "grants": GrantsDocument,
     "vectors": VectorsDocument,
 }

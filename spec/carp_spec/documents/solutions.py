@@ -5,18 +5,18 @@ from dataclasses import dataclass
 from functools import cached_property
 from operator import attrgetter
 from types import GenericAlias
-from typing import Annotated, Final, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias, TypeVar, cast
 
 import msgspec
 
-from carp_spec.documents.decoding import decode, decode_quickly, without_collection, write
+from carp_spec.documents.decoding import decode, without_collection, write
 from carp_spec.execution.traces import Trace
 from carp_spec.model import Plan, ResourceId, RobotId, Solution, Visit
 from carp_spec.shapes import require_shape
 
 SOLUTION_FORMAT: Final = "carproof-solution/1"
 TRACE_FORMAT: Final = "carproof-trace/1"
-
+D = TypeVar("D", bound=msgspec.Struct)
 
 VisitDocument: TypeAlias = tuple[ResourceId, int, int | None]
 
@@ -25,7 +25,12 @@ class PlanDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A plan: each visit is [resource, enter, leave], and a leave of null means for ever."""
 
     robot: RobotId
-    visits: tuple[VisitDocument, ...]
+    visits: tuple[Visit, ...]
+
+    @property
+    def plan(self) -> Plan:
+        """The plan."""
+        return Plan(self.robot, self.visits)
 
 
 class SolutionDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -46,44 +51,38 @@ class TraceDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     plans: tuple[PlanDocument, ...]
 
 
-def _of(kind: type[msgspec.Struct], name: str, item: type[msgspec.Struct]) -> type[msgspec.Struct]:
+def _of(kind: type[D], name: str, item: object) -> type[D]:
     """The class, with a tuple of these items in the field of that name."""
     items = [(name, GenericAlias(tuple, (item, ...)))]
-    return msgspec.defstruct(kind.__name__, items, bases=(kind,), forbid_unknown_fields=True, frozen=True)
+    said = {"__doc__": kind.__doc__}
+    exact = msgspec.defstruct(
+        kind.__name__, items, bases=(kind,), namespace=said, forbid_unknown_fields=True, frozen=True
+    )
+    return cast("type[D]", exact)
 
 
-_PLAN = _of(PlanDocument, "visits", Visit)
-_SOLUTION = _of(SolutionDocument, "plans", _PLAN)
-_TRACE = _of(TraceDocument, "plans", _PLAN)
-"""As in the documents, but for a visit, which is that of the model. The documents tell where an array is too long."""
+_EXACT_PLAN = _of(PlanDocument, "visits", VisitDocument)
+EXACT_SOLUTION = _of(SolutionDocument, "plans", _EXACT_PLAN)
+EXACT_TRACE = _of(TraceDocument, "plans", _EXACT_PLAN)
+"""As the documents, but for a visit, which is an array; they tell where an array is too long."""
 
 
 @without_collection()
 def read_solution(data: bytes) -> Solution:
     """Read a solution document; raises `Refusal` if it is malformed. The checker decides whether it is right."""
-    quick = decode_quickly(data, _SOLUTION)
-    if quick is not None:
-        return msgspec.convert(quick, Solution, from_attributes=True)
-    return solution_of(decode(data, SolutionDocument, SOLUTION_FORMAT))
+    return solution_of(decode(data, SolutionDocument, SOLUTION_FORMAT, EXACT_SOLUTION))
 
 
 def solution_of(document: SolutionDocument) -> Solution:
     """The solution of a document."""
-    return Solution(_plans(document.plans), document.order, document.unplanned)
-
-
-def _plans(documents: Sequence[PlanDocument]) -> tuple[Plan, ...]:
-    return tuple(Plan(each.robot, tuple(Visit(*visit) for visit in each.visits)) for each in documents)
+    return Solution(tuple(each.plan for each in document.plans), document.order, document.unplanned)
 
 
 @without_collection()
 def read_trace(data: bytes) -> Trace:
     """Read a trace; raises `Refusal` if it is malformed. `trace_violations` decides whether it follows a solution."""
-    quick = decode_quickly(data, _TRACE)
-    if quick is not None:
-        return msgspec.convert(quick, Trace, from_attributes=True)
-    document = decode(data, TraceDocument, TRACE_FORMAT)
-    return Trace(document.now, _plans(document.plans))
+    document = decode(data, TraceDocument, TRACE_FORMAT, EXACT_TRACE)
+    return Trace(document.now, tuple(each.plan for each in document.plans))
 
 
 _RESOURCE, _ENTER = attrgetter("resource"), attrgetter("enter")
@@ -118,21 +117,18 @@ class PlanColumns:
     @cached_property
     def plan(self) -> Plan:
         """The plan, made once."""
-        return Plan(self.robot, tuple(map(Visit, self.resources, self.enters, self._leaves)))
+        leaves = (*self.enters[1:], self.leave)
+        return Plan(self.robot, tuple(map(Visit, self.resources, self.enters, leaves)))
 
     @property
     def document(self) -> PlanDocument:
         """The document of the plan."""
-        return PlanDocument(self.robot, tuple(zip(self.resources, self.enters, self._leaves, strict=True)))
-
-    @property
-    def _leaves(self) -> tuple[int | None, ...]:
-        return (*self.enters[1:], self.leave)
+        return PlanDocument(self.robot, self.plan.visits)
 
 
 def plan_documents(plans: Sequence[Plan]) -> tuple[PlanDocument, ...]:
     """The documents of plans."""
-    return tuple(PlanDocument(plan.robot, visits_document(plan)) for plan in plans)
+    return tuple(PlanDocument(plan.robot, plan.visits) for plan in plans)
 
 
 def solution_document(solution: Solution) -> SolutionDocument:

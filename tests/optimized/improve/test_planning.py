@@ -25,7 +25,7 @@ def plan_crowd(instance: Instance, **options: Any) -> Solution:  # noqa: ANN401 
     """What is found for a crowd, as a solution."""
     found = planning.plan_crowd(instance, **options)
     assert found is not None
-    return found.solution()
+    return found.solution
 
 
 STEPWISE = Sizes(resources=7, robots=5, capacity=1, duration=1, release=0, pace=1)

@@ -6,7 +6,6 @@ from typing import Any
 import click
 
 from carp_spec import Refusal, violations_of
-from carp_spec.documents.decoding import write
 from carp_spec.documents.solutions import write_solution
 from carp_spec.inputs.options import require_polish_options
 from carproof.command_line.answer import Answer
@@ -133,9 +132,8 @@ def _plan_within(
 
         left = time_left(context, seconds, compiling)
         left = None if left is None else max(left, FOR_FIRST_PLANS)
-        found = find_within(problem, lambda each: write(each.document()), iterations, left, seed=seed, advance=advance)
-    document = found.document()
-    if output.write(write(document)):
+        found = find_within(problem, iterations, left, seed=seed, advance=advance, finish=write_solution)
+    if output.write(write_solution(found.solution)):
         time = perf_counter() - context.find_root().obj - compiling
-        show_found(problem, found, document.unplanned, f"best of {played} rounds", time)
-    return Answer.of(not document.unplanned)
+        show_found(problem, found, f"best of {played} rounds", time)
+    return Answer.of(not found.solution.unplanned)
