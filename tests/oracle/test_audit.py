@@ -45,10 +45,6 @@ def test_a_late_plan_is_shown_with_an_earlier_one(carproof: Run) -> None:
     assert late == [{"robot": "r1", "arrival": 3, "earliest": 2, "plan": EAST_PLAN}]
 
 
-def test_robots_without_a_plan_are_counted(carproof: Run) -> None:
-    assert last_row(carproof("audit town.json one.json").stdout)[:5] == ["2", "1", "0", "0", "1"]
-
-
 def test_an_order_is_found_for_plans_in_another_planners_format(carproof: Run, folder: Path) -> None:
     (folder / "row.map").write_text("type octile\nheight 2\nwidth 3\nmap\n...\n@.@\n")
     (folder / "row.scen").write_text("version 1\n0\trow.map\t3\t2\t0\t0\t2\t0\t2\n0\trow.map\t3\t2\t1\t0\t1\t1\t1\n")

@@ -145,6 +145,18 @@ def test_a_terminal_without_unicode_gets_plain_tables() -> None:
     assert done.stdout.splitlines()[0].startswith("rule ")
 
 
+@pytest.mark.usefixtures("folder")
+@pytest.mark.parametrize("command", ["rules", "check town.json broken.json", "gap town.json --limit 5"])
+def test_a_narrow_terminal_shows_every_word_of_a_table_whole(
+    carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    wide = [word for word in carproof(command).stdout.split() if len(word) <= 20 and word.isalpha()]
+    monkeypatch.setenv("COLUMNS", "40")
+    narrow = carproof(command).stdout.replace(":", " ").split()
+    assert wide
+    assert {*wide} <= {*narrow}
+
+
 def test_progress_goes_to_standard_error_and_only_to_a_terminal(tmp_path: Path) -> None:
     town = tmp_path / "town.json"
     subprocess.run([CARPROOF, "generate", "grid", "--robots", "5", "-o", town], check=True, capture_output=True)

@@ -10,14 +10,6 @@ import pytest
 from tests.oracle.running import Run
 from tests.profiles import rest_in
 
-WRONG = """
-import json, sys
-
-for line in sys.stdin:
-    request = json.loads(line)
-    results = {"start": {"name": "mine", "version": "1", "ops": ["query"]}, "stop": {}}
-    print(json.dumps({"id": request["id"], "result": results.get(request["op"], {"plan": 7})}), flush=True)
-"""
 SERVE = [sys.executable, "-m", "carproof", "serve"]
 
 
@@ -69,11 +61,3 @@ def test_json_and_junit_tell_the_same(process: Run, elsewhere: Path) -> None:
     fixed = report["cases"]["smoke"]["passed"] + report["cases"]["vectors"]["passed"]
     assert int(suite.get("tests", "")) == fixed + 1
     assert suite.get("failures") == "0"
-
-
-@pytest.mark.usefixtures("elsewhere")
-def test_where_findings_cannot_be_saved_there_is_a_verdict(process: Run) -> None:
-    outcome = process("conform", "--examples", "0", "--save", "/proc/findings", "--", sys.executable, "-c", WRONG)
-    assert outcome.code == 1
-    assert outcome.stderr.startswith("Nothing is saved: /proc/findings/")
-    assert outcome.stdout.splitlines()[-2].startswith("DOES NOT CONFORM: ")

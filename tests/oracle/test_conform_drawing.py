@@ -1,7 +1,7 @@
 """The picture in text of a finding of `carproof conform`."""
 
 from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Visit
-from carproof.conform.reporting.drawing import MOST_TICKS, drawing
+from carproof.conform.reporting.drawing import drawing
 
 
 def drawn(robots: int, leave: int) -> str:
@@ -18,9 +18,3 @@ def test_each_robot_has_its_own_symbol_that_the_legend_explains() -> None:
     assert (row, other) == ("a 0***********.", "b .............")
     assert "tick" in legend[0]
     assert "* is several robots" in legend[1]
-
-
-def test_more_robots_than_symbols_and_more_ticks_than_columns_are_said() -> None:
-    text = drawn(70, 2 * MOST_TICKS)
-    assert "?: any other robot" in text
-    assert f"from {MOST_TICKS} to {2 * MOST_TICKS}" in text

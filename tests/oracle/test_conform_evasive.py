@@ -1,6 +1,5 @@
 """Programs and functions that are never caught in a wrong answer, as they give none, or damage what judges look at."""
 
-import json
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -8,16 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.oracle.running import Run
 from tests.oracle.test_conform_judges import Tampered, as_it_is
 
 import carp_reference
-import carp_verify.bound.verify
 from carp_spec import Carp, Instance, Plan, Solution, Visit
-from carproof.conform.answers import result_of
-from carproof.conform.asking.smoke import EAST, row
-from carproof.conform.cases import NO_PLANS, Case
-from carproof.conform.findings import Fault
+from carproof.conform.cases import NO_PLANS
 from carproof.conform.levels import Level
 from carproof.conform.programs.child import Limits
 from carproof.conform.programs.function import Function
@@ -79,45 +73,9 @@ def test_an_op_that_plans_nobody_shows_no_level_above_sound(level: Level) -> Non
     assert report.shortfalls[0].startswith("it offers nothing that shows the level")
 
 
-def test_a_program_that_plans_robots_one_by_one_is_asked_for_the_op_that_shows_completeness() -> None:
-    subject = Tampered(as_it_is, ("query", "plan", "add"))
-    (shortfall,) = conform(subject, Options(Level.COMPLETE, examples=20)).shortfalls
-    assert "must name optimum (level complete-in-context: query or plan or add)" in shortfall
-
-
-def test_a_false_certificate_that_passes_the_check_is_refused_by_the_optimum(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(carp_verify.bound.verify, "verify_bound", lambda *_: 10**6)
-    subject = Tampered(as_it_is, ("bound",))
-    report = conform(subject, Options(Level.SOUND, examples=5, shrink_seconds=1))
-    assert {finding.rule for finding in report.findings} == {"program/lower"}
-
-
 def test_nothing_is_decided_without_random_cases() -> None:
     report = conform(Tampered(as_it_is), Options(Level.SOUND, examples=0))
     assert (report.conforms, report.shortfalls) == (None, [])
-
-
-@pytest.mark.ci
-@pytest.mark.usefixtures("elsewhere")
-def test_random_cases_are_new_ones_each_time_and_the_verdict_names_their_seed(process: Run) -> None:
-    serve = ["--", sys.executable, "-m", "carproof", "serve"]
-    seeds = [
-        json.loads(process("conform", "--json", "--examples", "6", "--large", "0", *serve).stdout)["seed"]
-        for _ in range(2)
-    ]
-    assert seeds[0] != seeds[1]
-    shown = process("conform", "--seed", str(seeds[0]), "--examples", "6", "--large", "0", *serve).stdout
-    assert "random query 1 of 1, plan 1 of 1" in shown
-    assert f"90 in 100 needed, seed {seeds[0]}" in shown
-
-
-@pytest.mark.parametrize(
-    "line",
-    ['{"id": 1, "result": {"plan": null, "plan": []}}', '{"id": 1, "id": 1, "result": {"plan": null}}'],
-)
-def test_a_response_that_says_two_things_is_none(line: str) -> None:
-    with pytest.raises(Fault, match="document/json"):
-        result_of(line.encode(), 1)
 
 
 def right(instance: Instance) -> Solution:
@@ -239,17 +197,3 @@ def test_a_function_that_gives_up_or_plans_one_robot_shows_nothing() -> None:
 
     report = conform(Function(first, "first"), Options(examples=60, whole=True))
     assert (report.conforms, report.findings) == (False, [])
-
-
-def test_a_case_keeps_its_instance_whatever_a_function_does_with_its_own() -> None:
-    seen: list[Instance] = []
-
-    def keeps(instance: Instance) -> Solution:
-        seen.append(instance)
-        return right(instance)
-
-    case = Case("random", "plan", "plan", row([EAST]))
-    Function(keeps, "keeps").ask(case)
-    assert seen == [case.instance]
-    assert seen[0] is not case.instance
-    assert seen[0].graph is not case.instance.graph

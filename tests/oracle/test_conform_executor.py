@@ -15,7 +15,6 @@ from tests.profiles import draws
 
 from carp_reference.execution import order_of
 from carproof import Delay, Report, Robot, RobotId, Trace
-from carproof.conform.answers import Skipped
 from carproof.conform.asking.random_cases import execution_cases
 from carproof.conform.asking.smoke import committed, row
 from carproof.conform.cases import EXECUTION, Case
@@ -75,12 +74,6 @@ def smallest(report: Report) -> tuple[str, Case]:
 def test_who_keeps_the_planned_order_conforms(command: list[str]) -> None:
     report = run(Program(command, Limits()), Level.EXACT, 20)
     assert (report.findings, report.conforms, report.tested) == ([], True, 20)
-
-
-def test_who_enters_as_soon_as_there_is_room_stands_face_to_face() -> None:
-    rule, case = smallest(run(Called("room")))
-    assert rule == "program/arrives"
-    assert (len(case.instance.robots), case.delays) == (2, ())
 
 
 def test_a_program_that_can_stand_for_ever_is_found_and_shrunk_to_few_robots(process: Run, elsewhere: Path) -> None:
@@ -164,21 +157,6 @@ def test_robots_in_another_order_are_reported_once_and_at_level_exact_alone() ->
     assert rules(MEETING, trace, Level.EXACT) == ["execution/order"]
 
 
-def test_all_robots_that_stand_for_ever_are_named() -> None:
-    (finding,) = execution_findings(MEETING, decided(MEETING), Level.EXACT)
-    assert finding.message.startswith("robots ['first', 'second'] stand for ever")
-
-
-def test_patience_starts_again_whenever_a_robot_enters() -> None:
-    trace = decided(ALONE, (1, ("first",)), (2, ("first",)))
-    assert [visit.enter for visit in trace.plans[0].visits] == [1, 2]
-
-
-def test_a_program_that_does_not_drive_is_skipped() -> None:
-    skipped = Skipped("no drive here")
-    assert execution(ALONE, lambda *_: skipped) is skipped
-
-
 @pytest.mark.parametrize("named", [("first", "first"), ("second",)])
 def test_only_robots_that_are_ready_may_be_named_each_once(named: tuple[str, ...]) -> None:
     with pytest.raises(Fault) as caught:
@@ -201,13 +179,6 @@ def test_a_failing_execution_is_saved_and_asked_again_with_its_delays(tmp_path: 
     )
     saved = json.loads((tmp_path / "vector.json").read_bytes())
     assert saved["cases"][0]["claim"]["format"] == "carproof-trace/1"
-
-
-@pytest.mark.usefixtures("elsewhere")
-def test_the_verdict_names_the_claim_of_an_executor(process: Run) -> None:
-    outcome = process("conform", "--executor", "--examples", "10", "--", *SERVE)
-    assert outcome.code == 0, outcome
-    assert "level sound (robots do not collide, and all arrive), tested on 10 answers" in outcome.stdout
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from tests.oracle.running import Run
 
 from carproof.conform.asking.smoke import smoke_cases
 from carproof.conform.cases import Case
@@ -131,12 +130,6 @@ def test_a_run_gives_up_after_a_few_lost_processes() -> None:
     assert [outcome.finding is not None for outcome in report.outcomes] == [True] * 3
 
 
-def test_who_skips_everything_does_not_conform() -> None:
-    report = run("skips everything", seconds=GENEROUS)
-    assert (report.conforms, report.findings, report.judged.total()) == (False, [], 0)
-    assert all(outcome.skipped == "no time" for outcome in report.outcomes)
-
-
 def test_the_end_of_standard_error_is_kept_and_bounded() -> None:
     assert run("exit", seconds=GENEROUS).findings[0].stderr == "out of robots\n"
     assert 0 < len(run("endless standard error").findings[0].stderr) <= 2**14
@@ -172,18 +165,3 @@ def test_an_interruption_leaves_no_child_and_ends_with_what_was_found(stop: sign
         stdout, stderr = process.communicate(timeout=GENEROUS)
     assert (process.returncode, stderr) == (128 + stop, "Interrupted.\n")
     assert "UNDECIDED" in stdout
-
-
-@pytest.mark.parametrize(
-    ("at_start", "limit"), [(True, "within 1.25 s, 5 times the 0.25 s of an answer"), (False, "within 0.25 s [")]
-)
-def test_the_message_says_which_limit_of_time_was_given(
-    carproof: Run, elsewhere: Path, at_start: bool, limit: str
-) -> None:
-    program = [*HOSTILE, "silence", *(["--at-start"] if at_start else [])]
-    options = ["--timeout", "0.25", "--examples", "1", "--shrinking", "0", "--save", elsewhere / "kept"]
-    outcome = carproof("conform", *options, "--", *program)
-    assert outcome.code == 1
-    assert limit in outcome.stdout
-    assert "1 robots" not in outcome.stdout
-    assert "1 resources" not in outcome.stdout

@@ -108,33 +108,6 @@ def test_a_kernel_that_differs_ends_the_run(
         run(tamper, ops=(op,))
 
 
-def test_a_certificate_that_the_kernel_refuses_ends_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    def other(requests: Sequence[bytes]) -> list[KernelVerdict]:
-        refused = b'"op":"verify-query"'
-        return [
-            msgspec.structs.replace(answer, verdict="refused") if refused in asked else answer
-            for asked, answer in zip(requests, ask(requests), strict=True)
-        ]
-
-    monkeypatch.setattr(by_kernel, "ask", other)
-    with pytest.raises(ContradictionError, match="refuses carproof's own"):
-        run(as_it_is, ops=("plan",))
-    assert run(as_it_is, Level.SOUND, ("plan",)).conforms
-
-
-def test_the_verdict_names_who_decided(carproof: Run, tmp_path: Path) -> None:
-    program()
-    arguments = ("conform", "--save", tmp_path, "--level", "context-optimal")
-    by = [
-        json.loads(carproof(*arguments, *kernel, "--json", "--", "false").stdout)["by"]
-        for kernel in ((), ("--kernel",))
-    ]
-    assert by == ["carp_spec", "carproof-kernel 1"]
-    outcome = carproof(*arguments, "--kernel", "--", "false")
-    assert outcome.code == 1
-    assert "decided by carproof-kernel 1" in outcome.stdout.splitlines()
-
-
 def test_without_a_kernel_or_above_its_levels_nothing_is_asked(
     carproof: Run, elsewhere: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -17,7 +17,6 @@ from carproof.conform.judging.claims import FEATURES, Claims
 from carproof.conform.judging.judges import first_finding
 from carproof.conform.levels import Level
 from carproof.conform.run import Options, conform
-from carproof.formats.movingai_writer import is_classical
 
 BUDGET = 60.0
 NO_BUG = Bug("none", "nothing", "plan", Level.SOUND, lambda _: None)
@@ -61,13 +60,6 @@ def test_large_cases_have_no_feature_that_is_not_claimed(feature: str) -> None:
     assert not [case.name for case in cases if FEATURES[feature](case)]
 
 
-def test_large_cases_of_classical_planners_are_classical() -> None:
-    ladder = [r for r in rungs(("plan",), Level.SOUND, 1, whole=True) if r.robots <= SIZES[1]]
-    cases = [case for rung in ladder if (case := large_case(rung, Claims(), classical=True)) is not None]
-    assert cases
-    assert all(is_classical(case.instance) for case in cases)
-
-
 class Slow(Planted):
     """Right, and too slow beyond 20 robots."""
 
@@ -82,12 +74,6 @@ def test_a_planner_that_is_too_slow_for_a_size_is_named_and_judged_below_it() ->
     assert report.conforms
     assert report.extent.robots == SIZES[0]
     assert [cut for cut in report.cut if "too slow" in cut and f"{SIZES[1]} robots" in cut]
-
-
-def test_cases_that_the_clock_cuts_are_counted() -> None:
-    report = conform(Planted(NO_BUG), Options(examples=10, large=0.2))
-    assert report.conforms
-    assert any("not asked" in cut for cut in report.cut)
 
 
 def test_who_gives_up_on_large_cases_has_shown_nothing_about_them() -> None:
@@ -128,10 +114,6 @@ def test_a_large_failure_is_shrunk_to_the_number_beyond_which_it_shows() -> None
     assert (robot.release, robot.start == robot.goal, report.minimal) == (100_001, True, True)
 
 
-def test_without_time_a_failure_is_not_called_minimal() -> None:
-    assert not run(ARRIVES_ONLY, 0.0, examples=100, shrinking=0.0).minimal
-
-
 UNTIDY = """
 import json, os, pathlib, sys
 from carp_spec.documents.instances import read_instance
@@ -141,10 +123,6 @@ import carp_reference
 
 how, source, target = sys.argv[1:]
 folder = pathlib.Path(source).parent
-if how == "clears":
-    for each in folder.iterdir():
-        each.unlink()
-    sys.exit()
 for name in ["output", "errors", "solution", *os.listdir(folder)]:
     each = folder / name
     each.unlink(missing_ok=True)
@@ -152,14 +130,12 @@ for name in ["output", "errors", "solution", *os.listdir(folder)]:
         os.mkfifo(each)
     elif how == "links":
         each.symlink_to("/dev/zero")
-    elif how == "folders":
-        each.mkdir()
 if how == "no folder":
     folder.rmdir()
 """
 
 
-@pytest.mark.parametrize("how", ["pipes", "links", "folders", "clears", "no folder"])
+@pytest.mark.parametrize("how", ["pipes", "links", "no folder"])
 def test_a_program_that_replaces_the_files_beside_its_instance_is_at_fault(
     process: Run, elsewhere: Path, how: str
 ) -> None:

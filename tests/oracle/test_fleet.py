@@ -325,15 +325,6 @@ def test_a_polish_keeps_what_was_done() -> None:
     assert changed > 0
 
 
-def test_the_rest_is_an_instance_of_its_own() -> None:
-    fleet = Fleet(row(), now=0)
-    fleet.advance(2)
-    instance, solution = fleet.rest()
-    assert [(robot.start, robot.release) for robot in instance.robots] == [("d", 2), ("c", 2)]
-    assert check(instance, solution).valid
-    assert audit(instance, solution).holds
-
-
 def news() -> dict[str, Callable[[Fleet], Change]]:
     robot = Robot("z", "a", "h", release=5)
     stays = Plan("x", (Visit("b", 0, None),))
@@ -380,37 +371,6 @@ def test_what_is_refused_changes_nothing(monkeypatch: pytest.MonkeyPatch, name: 
     if name == "limit/ticks service":
         assert refusal.value.path == "$.stops"
     assert_alike(fleet, twin)
-
-
-ODD: tuple[object, ...] = (
-    True,
-    1.0,
-    -1,
-    0,
-    1,
-    "a",
-    "nowhere",
-    None,
-    (),
-    [],
-    (Stop("b", -1),),
-    (Stop("q"),),
-    [Stop("b")],
-)
-
-
-@pytest.mark.parametrize("field", ["id", "start", "stops", "release", "pace"])
-def test_one_robot_is_refused_as_several_are(field: str) -> None:
-    for value in ODD:
-        odd = Robot("x", "a", "b")
-        object.__setattr__(odd, field, value)
-        refusals = []
-        for others in ((), (Robot("y", "a", "b"),)):
-            try:
-                Fleet(lane()).add(odd, *others)
-            except Refusal as refusal:
-                refusals.append((refusal.rule, refusal.path, refusal.message))
-        assert refusals in ([], 2 * refusals[:1]), value
 
 
 def assert_alike(fleet: Fleet, twin: Fleet) -> None:

@@ -253,16 +253,6 @@ def test_a_floor_that_is_not_known_is_refused(
     assert check(instance, Solution((), ())).valid
 
 
-def test_a_refusal_names_the_file_of_the_instance(carproof: Run, elsewhere: Path) -> None:
-    instance = Instance(ResourceGraph((Resource("a", 1, 1, 0, 0), Resource("b")), ()), ())
-    (elsewhere / "plant.json").write_bytes(write_instance(instance))
-    (elsewhere / "plans.json").write_bytes(write_solution(Solution((), ())))
-    refused = carproof("check plant.json plans.json --footprint 900x600mm -o verdict.json")
-    assert refused.code == 2
-    assert refused.stderr.startswith("Error: plant.json: $.graph.resources[1]")
-    assert not (elsewhere / "verdict.json").exists()
-
-
 @pytest.mark.parametrize("size", [Footprint(0, 1), Footprint(True, 1), Footprint(2, 1, round=True)])
 def test_a_size_that_is_none_is_refused(size: Footprint) -> None:
     with pytest.raises(Refusal, match="footprint/vehicle"):

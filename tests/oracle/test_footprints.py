@@ -112,14 +112,6 @@ def test_a_turn_on_the_spot_sweeps_a_disc() -> None:
     assert beside == {"near", "turn", "b"}
 
 
-def test_a_footprint_needs_positions(carproof: Run, elsewhere: Path) -> None:
-    (elsewhere / "plant").write_text("roadmap:\n  undirected: true\n  edges: [[a, b]]\n")
-    outcome = carproof("convert plant -o plant.json --footprint 450mm")
-    assert outcome.code == 2
-    assert outcome.stderr.startswith("Error: plant:1: the point 'a' must have a position, for a footprint")
-    assert carproof("convert plant -o plant.json --robots 0").code == 0
-
-
 coordinates = st.integers(0, 20)
 places = st.tuples(coordinates, coordinates)
 segments = st.tuples(places, places).filter(lambda ends: max(abs(a - b) for a, b in zip(*ends, strict=True)) > 1)

@@ -239,14 +239,6 @@ def test_what_orders_cannot_express_is_refused(
     assert refused.value.rule == rule
 
 
-def test_options_of_orders_are_refused_elsewhere(carproof: Run, elsewhere: Path) -> None:
-    (elsewhere / "plant.xml").write_text(OPENTCS)
-    assert carproof("convert plant.xml --at 3").code == 2
-    assert carproof("convert plant.xml plans.json --to csv --unit 1m").code == 2
-    assert carproof("convert plant.xml plans.json --to vda5050-3 --robots 3").code == 2
-    assert carproof("convert plant.xml plans.json --to vda5050-3 --at 3 --since 4").code == 2
-
-
 @pytest.mark.nightly
 @pytest.mark.parametrize("schema", SCHEMAS)
 @given(PLANNED, st.integers(0, 12))

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Run, corridor, save, solution
+from tests.oracle.running import TWO, TWO_PLANNED, Run, save, solution
 
 from carproof import check_update, polish, read_instance, read_solution, total_cost
 from carproof.engines import engine_named
@@ -42,13 +42,6 @@ def test_after_tick_0_a_robot_without_a_plan_gets_none(carproof: Run) -> None:
     assert (outcome.code, json.loads(outcome.stdout)["unplanned"]) == (1, ["r2"])
 
 
-def test_a_robot_that_cannot_be_planned_is_told_and_the_answer_is_no(carproof: Run) -> None:
-    save(three=corridor([*TWO["robots"], HEAD_ON]))
-    outcome = carproof("polish three.json plans.json --iterations 20")
-    assert outcome.code == 1
-    assert outcome.stdout.splitlines()[-1] == "unplanned: robot r3: the committed plans leave no way to its goal"
-
-
 def test_the_gap_is_that_of_a_certificate_which_is_verified(carproof: Run) -> None:
     assert carproof("bound town.json --steps 0 -o bound.json").code == 0
     outcome = carproof("polish town.json late.json --iterations 0 --bound bound.json")
@@ -71,8 +64,3 @@ def test_for_a_time_the_command_python_and_the_op_improve_plans(carproof: Run) -
     response, _ = respond(msgspec.json.encode(op), Session(engine_named(None)))
     found = read_solution(json.dumps(json.loads(msgspec.json.encode(response))["result"]).encode())
     assert total_cost(INSTANCE, found.plans) == BEST
-
-
-def test_an_engine_keeps_to_rounds_that_never_raise_the_total(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("carp_optimized.improve.annealing.polish_or_anneal", None)
-    assert carproof("polish town.json late.json --seconds 0.1 --engine optimized").code == 0

@@ -22,7 +22,6 @@ DOCUMENTS: dict[str, object] = {
     "served": corridor([{"id": "r1", "start": "a", "stops": [{"resource": "c", "service": 1}]}]),
     "astray": corridor([{**EAST, "goal": "q"}]),
     "stays": corridor([EAST], "stay"),
-    "fraction": corridor([{**EAST, "release": 1.0}]),
     "three": corridor([EAST, BEHIND, HEAD_ON]),
     "numbered": corridor([{**EAST, "id": 7}, {**BEHIND, "id": "7"}]),
     "none": {**TWO_PLANNED, "plans": [], "order": [], "unplanned": ["r1", "r2"]},
@@ -32,19 +31,12 @@ DOCUMENTS: dict[str, object] = {
     "far": {**TWO_PLANNED, "plans": [{"robot": "r1", "visits": [["a", 0, 10**9]]}], "order": ["r1"]},
     "bound": BOUND,
     "bound-scale": {**BOUND, "scale": 1.5},
-    "bound-true": {**BOUND, "bound": True},
-    "bound-more": {**BOUND, "more": 1},
     "bound-high": {**BOUND, "bound": 6},
     "east": corridor([EAST]),
     "east-plans": {**TWO_PLANNED, "plans": TWO_PLANNED["plans"][:1], "order": ["r1"]},
     "trace-early": {**TRACE, "plans": [{"robot": "r1", "visits": [["a", 0, 4], ["b", 4, None]]}]},
-    "trace-nobody": {**TRACE, "plans": []},
-    "trace-astray": {**TRACE, "plans": [{"robot": "r1", "visits": [["b", 0, None]]}]},
-    "trace-hurried": {**TRACE, "plans": [{"robot": "r1", "visits": [["a", 0, 0], ["b", 0, None]]}]},
     "delays-nobody": [["r9", 0, 1]],
-    "delays-last": [["r1", 3, 1]],
     "delays-zero": [["r1", 0, 0]],
-    "delays-twice": [["r1", 0, 1], ["r1", 0, 1]],
     "route": [["b", 0, 1], ["c", 1, 2]],
 }
 SLOW = "$.graph.nodes[0].duration: "
@@ -57,101 +49,56 @@ USAGE = (
     ("check", "Missing argument"),
     ("check --jsn", "No such option"),
     ("rules joint/capacty", "the nearest are joint/capacity"),
-    ("rules ?", "carproof rules lists them all"),
     ("theorems earliest_entry_wins", "earliest_entry_dominates"),
     ("conform -- ./no-such-planner", "there is no such program"),
     ("bound town.json --seconds 0", "--seconds"),
-    ("bound town.json --seconds x", "--seconds"),
-    ("bound town.json --steps -1", "--steps"),
-    *(
-        (f"{command} town.json --limit {limit}", "--limit")
-        for command in ("optimum", "gap")
-        for limit in ("0", "-1", "x")
-    ),
+    ("optimum town.json --limit 0", "--limit"),
+    ("gap town.json --limit x", "--limit"),
 )
 FILES = (
-    ("plan empty.json", "empty.json: $: ", "line 1, column 1", "[document/json]"),
     ("plan comma.json", "comma.json: $: ", "line 2, column 9", "[document/json]"),
-    ("plan latin.json", "latin.json: $: ", "line 2, column 3", "[document/json]"),
     ("plan stays.json", "$.after_goal: ", "'stay'", "it must be park or vanish [document/shape]"),
     ("plan verdict.json", f"verdict.json: {NO_FORMAT}, and is carproof-verdict/1 [document/format]"),
-    (
-        "plan mark.json",
-        "$: the document must be JSON in UTF-8",
-        "line 1, column 1",
-    ),
-    ("plan nothing.json", f"nothing.json: {NO_FORMAT} [document/format]"),
-    ("plan plans.json", f"plans.json: {NO_FORMAT}, and is carproof-solution/1 [document/format]"),
+    ("plan mark.json", "$: the document must be JSON in UTF-8", "line 1, column 1"),
     ("plan extra.json", "extra.json: $: object contains unknown field extra [document/shape]"),
     ("plan astray.json", "$.robots[0].goal: the goal must be the id of a resource, and 'q' is not [instance/endpoint]"),
-    ("plan fraction.json", "fraction.json: $.robots[0].release: expected int, got float [document/shape]"),
     ("plan missing.json", "missing.json: there is no such file."),
     ("plan .", ".: it is a folder."),
     ("plan /proc/self/mem", "/proc/self/mem: it cannot be read: Input/output error"),
-    ("plan town.json -o .", ".: it is a folder."),
     ("plan town.json -o none/out.json", "there is no folder "),
     ("plan town.json -o /proc/x", "/proc/x: it "),
     ("check - -", "Only one of the files can be standard input."),
-    ("check --z3 town.json nothing.json", "document/format"),
     ("demo town.json", "town.json"),
-    ("demo town.json/demo", "town.json"),
 )
 PLANNING = (
     ("plan town.json --planner best", "--planner: there is no planner 'best'; the planners are carp, shuffled"),
     ("plan town.json --planner neighborhood", "did you mean neighbourhood? The planners are carp, shuffled"),
     ("plan town.json --planner carp --m 3", "--m: the planner carp has no option m; it has none"),
-    ("plan town.json --planner greedy --seed 3", "--seed: the planner greedy has no option seed"),
-    ("plan town.json --m 0", "--m: "),
     ("plan town.json --m two", "'two' is not a valid integer"),
-    ("plan town.json --sample 0", "--sample: "),
-    ("plan town.json --planner fixed-paths --paths all", "--paths: "),
     ("plan town.json --engine fastest", "'fastest' is not"),
     ("plan slow.json --engine optimized", f"Error: slow.json: {SLOW}"),
     ("plan slow.json --engine optimized --planner time-expanded", "Error: --planner: "),
     ("query town.json plans.json r9", "ROBOT: the instance must have the robot, and has no 'r9' [request/robot]"),
-    ("query town.json plans.json r1 --now -1", "--now: it must be a whole number of at least 0, not -1 [request/now]"),
     ("add town.json plans.json r1", "ROBOT: the robot to add must have no plan, and 'r1' has one [request/robot]"),
     ("query numbered.json none.json 7", "2 print as 7"),
     ("query three.json broken.json r3", f"Error: broken.json: {CAPACITY}"),
-    ("add three.json broken.json r3", f"Error: broken.json: {CAPACITY}"),
-    ("polish town.json broken.json", f"Error: broken.json: {CAPACITY}"),
-    (
-        "polish town.json plans.json --iterations -1",
-        "--iterations: the iterations must be a whole number of at least 0",
-    ),
     ("polish town.json plans.json --seconds 0", "--seconds: the seconds must be a number above 0, not 0.0 [polish/opt"),
-    ("polish town.json plans.json --seconds nan", "--seconds: the seconds must be a number above 0"),
     ("polish town.json plans.json --seconds 1 --iterations 1", "there must be either iterations or seconds, not both"),
-    ("polish town.json plans.json --seed -1", "--seed: the seed must be a whole number between 0 and"),
     ("polish town.json plans.json --bound bound-high.json", "bound-high.json: $."),
     ("execution give-way town.json plans.json r1 --route route.json --engine reference", "[plan/start]"),
-    *(
-        (
-            f"plan served.json --planner fixed-paths --engine {engine}",
-            "$.robots: each robot must have a goal alone here",
-        )
-        for engine in ("optimized", "reference")
-    ),
-    ("plan town.json --seconds 0", "[polish/options]"),
-    ("plan town.json --seconds 1 --iterations 1", "[polish/options]"),
+    ("plan served.json --planner fixed-paths", "$.robots: each robot must have a goal alone here"),
     ("plan town.json --seconds 1 --planner carp", "[planner/options]"),
     ("plan town.json --iterations 1 --m 3", "[planner/options]"),
     ("plan town.json --seconds 1 --engine reference", "[planner/options]"),
 )
 EXECUTING = (
     ("execution retime east.json east-plans.json trace-early.json", "trace-early.json: $.", "[trace/ticks]"),
-    ("execution retime east.json east-plans.json trace-nobody.json", "trace-nobody.json: $.", "[trace/robots]"),
-    ("execution retime east.json east-plans.json trace-astray.json", "trace-astray.json: $.", "[trace/prefix]"),
-    ("execution retime east.json east-plans.json trace-hurried.json", "trace-hurried.json: $.", "[execution/duration]"),
     ("execution retime east.json east-plans.json east-plans.json", "east-plans.json: $.", "[document/format]"),
-    *(
-        (f"execution simulate east.json east-plans.json --delays={delays}", "[request/delays]")
-        for delays in ("2", "0.05:0", "x", "0.1:x", "-1", "0.00000001")
-    ),
-    *(
-        (f"execution simulate east.json east-plans.json --delays {delays}.json", "[request/delays]")
-        for delays in ("delays-nobody", "delays-last", "delays-zero", "delays-twice", "nothing")
-    ),
+    ("execution simulate east.json east-plans.json --delays=x", "[request/delays]"),
+    ("execution simulate east.json east-plans.json --delays=0.1:x", "[request/delays]"),
+    ("execution simulate east.json east-plans.json --delays=0.00000001", "[request/delays]"),
+    ("execution simulate east.json east-plans.json --delays delays-nobody.json", "[request/delays]"),
+    ("execution simulate east.json east-plans.json --delays nothing.json", "[request/delays]"),
     (
         "execution simulate east.json east-plans.json --delays delays-zero.json",
         "delays-zero.json: $[0]: the delay",
@@ -170,62 +117,42 @@ PROOFS = (
     ("bound late.json --steps 1", "late.json: $.robots[0].release: "),
     ("bound late.json --steps 1", "the reference engine has no such limit, but finds no bounds"),
     ("verify town.json bound-scale.json", "bound-scale.json: $.scale: ", "[document/shape]"),
-    ("verify town.json bound-true.json", "bound-true.json: $.bound: ", "[document/shape]"),
-    ("verify town.json bound-more.json", "bound-more.json: $: ", "[document/shape]"),
     ("optimum town.json --proof town.json", "town.json"),
-    ("optimum town.json --proof town.json/proof", "town.json"),
     ("verify nowhere", "nowhere"),
 )
 MAKING = (
     ("generate grid --width 0", "--width: it must be between 1 and 1073741824, not 0 [generate/options]"),
     ("generate grid --width 501 --height 500", "--width: the map must have at most 250000 resources"),
-    ("generate grid --map 21", "--map: it must be between 0 and 20, not 21 [generate/options]"),
     ("generate grid --robots 401", "--robots: 401 robots need as many distinct starts, and the map has 400"),
-    ("generate grid --robots 100001 --distinct none", "--robots: it must be between 0 and 100000"),
     ("generate grid --release 9..3", "--release: its range must not fall, and is 9..3 [generate/options]"),
-    ("generate grid --pace 0..3", "--pace: it must be between 1"),
     ("generate grid --duration 1..x", "must be a whole number or LOW..HIGH"),
-    ("generate grid --seed -1", "--seed: it must be between 0"),
     ("generate grid --after-goal stay", "'stay' is not one of 'vanish', 'park'"),
     ("generate warehouse --aisle 0", "--aisle: it must be between 1"),
-    ("generate warehouse --rows 100000", "--width: the map must have at most 250000 resources"),
     ("view town.json plans.json --at 1 --chart", "Only one of --at and --chart can be drawn."),
     ("view town.json far.json", "and there is 1000000000 [view/ticks]"),
-    ("view town.json plans.json --at -10000001", "[view/ticks]"),
     ("view town.json broken.json --at 900", "from tick 0 to tick 5"),
     ("view town.json plans.json --trace plans.json --chart", "--trace is for the page, without --at and --chart."),
-    ("view town.json plans.json --trace plans.json --at 1", "--trace is for the page, without --at and --chart."),
     ("view town.json broken.json -o x.pdf", ".html", ".svg"),
     ("view town.json broken.json -o x.svg", ".html", "--at", "--chart"),
     ("view town.json broken.json --at 1 -o x.html", ".svg"),
-    ("view town.json broken.json --chart -o x.PNG", ".svg"),
 )
 FORMATS = (
     ("check m.json", "Give INSTANCE and SOLUTION, or --map, --scen and SOLUTION."),
-    ("check m.json lacam lacam", "Give INSTANCE and SOLUTION"),
     (f"check m.json lacam {MAPS}", "Give INSTANCE and SOLUTION"),
     ("check lacam --map m.map", "--map and --scen go together, and --agents with them."),
-    ("check lacam --agents 1", "--map and --scen go together"),
-    ("check - --map - --scen m.scen", "Only one of the files can be standard input."),
-    ("check m.json lacam --from yaml", "Invalid value for '--from'"),
     ("check m.json lacam --from mapf-tracker", "lacam:1: the line must be of the letters"),
     ("convert m.json lacam --from lacam", "--from and --to concern a solution."),
     ("convert m.json lacam --to lacam --agents 1", "--to concerns a solution."),
-    ("convert m.json lacam --to lacam --json", "--to concerns a solution."),
     (
         "convert town.json plans.json",
         "town.json is no map; to convert a solution of an instance, name a format by --to.",
     ),
     ("convert m.map m.scen --agents 3", "m.scen:3: 3 agents are asked for, and the scenario has 2"),
     ("convert - m.scen", "Error: standard input:1: "),
-    ("convert - -", "Only one"),
 )
 EXPERIMENTS = (
     ("experiment quality --robots 500 --store st", "500 robots need as many distinct starts, and the map has 400"),
-    ("experiment quality --map 23 --store st", "23 is not in the range 0<=x<=22"),
-    ("experiment quality --assignments 0 --store st", "0 is not in the range x>=1"),
     ("experiment quality --backend dask --store st", "needs the address of its --scheduler"),
-    ("experiment crosscheck --questions many --store st", "'many' is not a valid integer"),
 )
 LAYOUTS = {
     "plant.xml": '<?xml version="1.0"?>\n<model version="0.0.4" name="Plant">\n<point name="P1"/>\n</model>\n',
@@ -254,11 +181,10 @@ WRITES = ("plan", "polish", "retime", "give-way", "view")
 @pytest.fixture(name="many")
 def many_documents(folder: Path) -> Path:
     save(**DOCUMENTS)
-    files = {"empty.json": "", "mark.json": "?", "m.map": MAP, "m.scen": SCENARIO, "lacam": LACAM} | LAYOUTS
+    files = {"mark.json": "?", "m.map": MAP, "m.scen": SCENARIO, "lacam": LACAM} | LAYOUTS
     for name, text in files.items():
         (folder / name).write_text(text)
     (folder / "comma.json").write_text('{\n "a": 1,,\n}')
-    (folder / "latin.json").write_bytes(b'{\n "\xe9": 1}')
     (folder / "m.json").write_bytes(write_instance(INSTANCE))
     return folder
 

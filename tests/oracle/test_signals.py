@@ -185,14 +185,6 @@ def test_the_exit_code_is_that_of_the_command(tmp_path: Path) -> None:
     assert (code, stderr) == (70, b"carproof was ended by SIGKILL; if nobody sent it, memory has run out.\n")
 
 
-@pytest.mark.parametrize(
-    ("arguments", "code"), [("rules joint/capacty", 2), ("rules joint/capacity", 0), ("check a b", 2)]
-)
-def test_a_full_standard_error_keeps_the_exit_code(arguments: str, code: int) -> None:
-    shell = f"{' '.join(CARPROOF)} {arguments} 2>/dev/full >/dev/null"
-    assert subprocess.run(["/bin/sh", "-c", shell], check=False).returncode == code
-
-
 def test_exhausted_memory_is_no_answer(tmp_path: Path) -> None:
     (tmp_path / "large.json").write_bytes(b" " * 2**28)
     shell = f"ulimit -v 400000; exec {' '.join(CARPROOF)} check large.json large.json"

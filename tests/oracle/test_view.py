@@ -18,23 +18,18 @@ from tests.oracle.viewing import (
     picture_of,
     plant,
     scene_of,
-    without_positions,
 )
 from tests.programs import require_programs
 
 from carp_spec import Resource, ResourceGraph
 from carproof.viewer import limits
-from carproof.viewer.chart_picture import TimeScale
 from carproof.viewer.colours import LIGHT, LOOKS
-from carproof.viewer.lanes import area, lanes, spots
 from carproof.viewer.page import view
 from carproof.viewer.placement import UNIT, placement
 from carproof.viewer.samples import FOLDER, sample_pictures
-from carproof.viewer.stills import view_map
 
 FEWEST_PIXELS = 30
 OUTSIDE = re.compile(r"""(?:src|href|url|action)\s*[=(]\s*["']?(?!#|data:)[a-z]*:?//""", re.IGNORECASE)
-WHOLE = area(is_named=False, has_traits=False)
 
 
 def test_the_page_is_one_file_that_names_no_address_outside(carproof: Run, tmp_path: Path) -> None:
@@ -42,16 +37,6 @@ def test_the_page_is_one_file_that_names_no_address_outside(carproof: Run, tmp_p
     assert not OUTSIDE.search(page)
     assert "default-src 'none'" in page
     assert not re.search(r"<(?:link|script|img)[^>]*(?:src|href)=\"(?!data:)", page)
-
-
-def test_equal_input_gives_equal_bytes(process: Run, tmp_path: Path) -> None:
-    instance = without_positions(CORRIDOR)
-    (tmp_path / "town.json").write_text(json.dumps(instance))
-    (tmp_path / "plans.json").write_text(json.dumps(COLLIDING))
-    for name in ("one", "two"):
-        outcome = process("view", tmp_path / "town.json", tmp_path / "plans.json", "-o", tmp_path / name)
-        assert outcome.code == 0
-    assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
 
 
 def test_the_scene_has_every_visit_in_its_place_and_every_free_window(carproof: Run, tmp_path: Path) -> None:
@@ -82,16 +67,6 @@ def test_ids_cannot_leave_their_text(carproof: Run, tmp_path: Path) -> None:
         assert shown in texts
 
 
-def test_the_still_of_the_map_shows_each_robot_where_it_is(carproof: Run, tmp_path: Path) -> None:
-    def robots(tick: int) -> dict[str | None, str | None]:
-        picture = picture_of(drawn(carproof, tmp_path, CORRIDOR, COLLIDING, "--at", str(tick)))
-        return {each.findtext(f"{SVG}title"): each.get("transform") for each in picture[-1]}
-
-    assert robots(0) == {"r1": "translate(26 30) scale(110e-2)", "r2": "translate(66 30) scale(110e-2)"}
-    assert robots(4) == {"r2": "translate(186 30) scale(110e-2)"}
-    assert robots(5) == {}
-
-
 def test_the_still_of_the_map_marks_the_violations_of_its_tick(carproof: Run, tmp_path: Path) -> None:
     def marked(tick: int) -> tuple[int, int]:
         still = drawn(carproof, tmp_path, CORRIDOR, COLLIDING, "--at", str(tick))
@@ -107,17 +82,6 @@ def test_the_still_of_the_chart_has_rows_windows_stays_and_violations(carproof: 
         for tag, kind in (("text", "row-name"), ("path", "window"), ("path", "bar"), ("path", "violation"))
     }
     assert count == {"row-name": 5, "window": 5, "bar": 7, "violation": 2}
-
-
-def test_one_way_moves_are_arrows(carproof: Run, tmp_path: Path) -> None:
-    instance = corridor([EAST])
-    instance["graph"]["directed"] = True
-    instance["graph"]["edges"].append({"source": "b", "target": "a"})
-    picture = picture_of(drawn(carproof, tmp_path, instance, solution({"r1": EAST_PLAN}), "--at", "0"))
-    paths = {each.get("class"): each.get("d", "") for each in picture.iter(f"{SVG}path")}
-    assert "edge" not in paths
-    assert paths["joint"].count("M") == 4
-    assert paths["one-way"].count("M") == paths["one-way head"].count("z") == 3
 
 
 def test_a_plant_has_its_lanes_groups_stops_and_headings() -> None:
@@ -142,65 +106,6 @@ def test_a_plant_has_its_lanes_groups_stops_and_headings() -> None:
     assert places["b"]["windows"] == [[0, 1], [12, None]], "who is on a lane holds its ends"
 
 
-def test_the_still_of_a_plant_shows_robots_along_lanes_with_headings_and_services() -> None:
-    instance, plans = plant()
-    seen = []
-    for tick in (1, 2, 3, 5, 9):
-        robot = picture_of(view_map(instance, plans, at=tick, title="plant").decode())[-1][0]
-        x, y, _ = (int(each.rstrip("e-2")) for each in re.findall(r"[\d]+(?:e-2)?", robot.get("transform", "")))
-        nose = robot.find(f"{SVG}path[@class='nose']")
-        assert nose is not None
-        tip = nose.get("d", "").partition("L")[0]
-        seen.append((x, y, tip, robot.find(f"{SVG}circle[@class='serving']") is not None))
-    (first, second, third, served, after) = seen
-    assert first[0] < second[0] < third[0] < served[0] < after[0]
-    assert first[1] == third[1] > after[1]
-    assert [each[2] for each in seen] == ["M15 0"] * 4 + ["M0 -15"]
-    assert [each[3] for each in seen] == [False, False, False, True, False]
-
-
-def square(*lacking: str) -> Document:
-    """Three by three cells, some of them obstacles."""
-    cells = [f"{x}{y}" for y in range(3) for x in range(3) if f"{x}{y}" not in lacking]
-    ways = [
-        (a, b) for a in cells for b in cells if a < b and abs(int(a[0]) - int(b[0])) + abs(int(a[1]) - int(b[1])) == 1
-    ]
-    nodes = [{"id": cell, "x": 3 * int(cell[0]), "y": 3 * int(cell[1])} for cell in cells]
-    edges = [{"source": source, "target": target} for source, target in ways]
-    return {**corridor([]), "graph": {"nodes": nodes, "edges": edges}}
-
-
-def test_what_lies_between_the_squares_of_a_grid_is_a_wall(carproof: Run, tmp_path: Path) -> None:
-    def floor(instance: Document) -> str | None:
-        picture = picture_of(drawn(carproof, tmp_path, instance, solution({}), "--at", "0"))
-        paths = {each.get("class"): each.get("d", "") for each in picture.iter(f"{SVG}path")}
-        return paths["joint"] if paths.get("wall") == "M0 0h132v132h-132z" else None
-
-    whole = floor(square())
-    assert whole is not None
-    assert (whole.count("h8v32"), whole.count("h32v8"), whole.count("h8v8")) == (6, 6, 4)
-    assert "M42 42h8v8h-8z" in whole
-    around = floor(square("11"))
-    assert around is not None
-    assert (around.count("h8v32"), around.count("h32v8"), around.count("h8v8")) == (4, 4, 0)
-    slanted = square()
-    slanted["graph"]["edges"].append({"source": "00", "target": "11"})
-    assert floor(slanted) is None
-    assert floor(without_positions(square())) is None
-
-
-def test_robots_that_share_a_resource_stand_side_by_side() -> None:
-    assert list(lanes([(0, 4), (1, 2), (2, None), (4, 5), (9, 10)])) == [0, 1, 1, 0, 0]
-    roomy = spots(Resource("a", capacity=4), 4, WHOLE)
-    assert len({(spot.dx, spot.dy) for spot in roomy}) == 4
-    assert all(max(abs(spot.dx), abs(spot.dy)) + spot.radius <= 16 for spot in roomy)
-    collision = spots(Resource("a", capacity=1), 2, WHOLE)
-    assert (collision[0].dx, collision[0].dy, collision[0].radius) == (0, 0, 13)
-    assert 0 < collision[1].dx < 13
-    crowd = spots(Resource("a", capacity=1), 5, WHOLE)
-    assert len({(spot.dx, spot.dy) for spot in crowd}) == 5
-
-
 def test_own_positions_are_kept_and_others_are_laid_out_apart() -> None:
     row = tuple(Resource(name, x=1000 * at, y=0) for at, name in enumerate("abc"))
     edges = (("a", "b"), ("b", "c"))
@@ -222,12 +127,6 @@ def test_own_positions_are_kept_and_others_are_laid_out_apart() -> None:
             for at, one in enumerate(points)
             for two in points[:at]
         )
-
-
-def test_large_graphs_without_positions_are_laid_out_in_rows() -> None:
-    many = tuple(Resource(number) for number in range(900))
-    placed = placement(ResourceGraph(many, tuple((number, number + 1) for number in range(899))))
-    assert (placed.width, placed.height) == (29 * UNIT + 52, 29 * UNIT + 52)
 
 
 def test_all_goals_and_starts_of_one_resource_are_drawn_apart(carproof: Run, tmp_path: Path) -> None:
@@ -266,17 +165,6 @@ def test_an_instance_without_resources_or_robots_is_drawn(carproof: Run, tmp_pat
     instance = {**corridor([]), "graph": {"nodes": [], "edges": []}}
     for options in ((), ("--at", "0"), ("--chart",)):
         assert drawn(carproof, tmp_path, instance, solution({}), *options)
-
-
-def test_the_chart_marks_round_ticks() -> None:
-    def marks(first: int, last: int) -> list[int]:
-        return list(TimeScale.beside(["a"], first, last).marks())
-
-    assert marks(0, 10) == list(range(11))
-    assert marks(0, 100) == list(range(0, 101, 5))
-    assert marks(0, 102) == [*range(0, 100, 5), 102]
-    assert marks(-3, 10_000)[:3] == [0, 500, 1000]
-    assert (len(marks(0, 10**7)), marks(0, 10**7)[-1]) == (21, 10**7)
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Iterator
-from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -14,7 +13,7 @@ from tests.oracle.viewing import COLLIDING, CORRIDOR, HOSTILE, SVG, picture_of, 
 
 from carp_reference import plan
 from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit
-from carproof import Settings, Trace, import_layout, read_instance, read_solution
+from carproof import Trace, read_instance, read_solution
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.viewer.map_picture import ROBOT_RADIUS
 from carproof.viewer.page import view
@@ -22,8 +21,6 @@ from carproof.viewer.stills import view_map
 
 LATER = 30
 FEWEST_FRAMES = 30
-READABLE = 8
-"""The least height of a name, in pixels."""
 FRAMES = 30
 CHART_IS_DRAWN = "return document.getElementById('chart').width > 400"
 
@@ -120,27 +117,6 @@ def test_the_page_and_the_still_agree_on_a_plant(driver: Chrome, tmp_path: Path)
     assert logged(driver, "browser") == []
 
 
-def test_names_of_a_plant_are_readable_where_it_is_drawn_small_and_none_is_over_another(
-    driver: Chrome, tmp_path: Path
-) -> None:
-    shown = opened(driver, tmp_path, *row_of_bays(24))
-    boxes = shown.script(
-        "return [...document.querySelectorAll('.point-name')].map((name) => name.getBoundingClientRect())"
-        ".map((box) => [box.left, box.right, box.height])"
-    )
-    assert len(boxes) == 24
-    assert all(height > READABLE for _, _, height in boxes)
-    assert all(one[1] <= other[0] for one, other in pairwise(sorted(boxes)))
-
-
-def row_of_bays(count: int) -> tuple[Instance, Solution]:
-    """Points in a row, with a lane from each to the next."""
-    nodes = [{"id": f"bay-{number}", "x": 4 * number, "y": number % 2} for number in range(count)]
-    links = [{"source": f"bay-{number}", "target": f"bay-{number + 1}"} for number in range(count - 1)]
-    row = json.dumps({"directed": True, "nodes": nodes, "links": links})
-    return import_layout(row.encode(), settings=Settings(robots=0)).instance, Solution((), ())
-
-
 def placed(transform: str) -> tuple[float, ...]:
     """The place and the radius of a robot in a still."""
     x, y, scale = transform.replace("translate(", "").replace("scale(", "").replace("e-2)", "").replace(")", "").split()
@@ -166,17 +142,6 @@ def test_it_plays_and_pauses_by_key_and_robots_move_between_resources(
     assert (slider(shown), shown.robots()) == stopped
 
 
-def test_it_stops_at_the_end_and_begins_anew(driver: Chrome, tmp_path: Path, town: tuple[Instance, Solution]) -> None:
-    shown = opened(driver, tmp_path, *town)
-    shown.press("+", "+", "+", "+", "+", "+", Keys.SPACE)
-    wait_for(shown, "return document.getElementById('play').textContent === 'Play'")
-    last = slider(shown)
-    assert shown.tick == f"tick {last} of {last}"
-    shown.press("-", "-", "-", "-", "-", "-", Keys.SPACE)
-    assert shown.text("play") == "Pause"
-    assert slider(shown) < last
-
-
 def test_keys_step_jump_and_change_the_speed(collision: Page) -> None:
     seen = []
     for keys in ([Keys.ARROW_RIGHT], [Keys.ARROW_RIGHT, Keys.ARROW_LEFT], [Keys.END], [Keys.ARROW_RIGHT], [Keys.HOME]):
@@ -189,12 +154,6 @@ def test_keys_step_jump_and_change_the_speed(collision: Page) -> None:
     assert collision.text("speed") == "0.5 ticks/s"
 
 
-def test_a_key_works_after_an_entry_was_clicked(collision: Page) -> None:
-    collision.click("#robots button", "r1")
-    collision.press(Keys.SPACE)
-    assert collision.text("play") == "Pause"
-
-
 def test_a_planted_collision_is_counted_listed_and_marked_at_its_tick(collision: Page) -> None:
     assert collision.text("verdict") == "✗ 2 violations"
     assert collision.text("violations").startswith("joint/capacity 2\nAt no tick do more robots")
@@ -204,19 +163,6 @@ def test_a_planted_collision_is_counted_listed_and_marked_at_its_tick(collision:
         collision.press(Keys.ARROW_RIGHT)
     assert marks == [(0, 0), (1, 2), (1, 2), (0, 0)]
     assert collision.robots()
-
-
-def test_both_resources_of_an_exchange_are_red_while_robots_pass_each_other(driver: Chrome, tmp_path: Path) -> None:
-    resources, edges = (Resource("a", x=0, y=0), Resource("b", x=1, y=0)), (("a", "b"),)
-    robots = (Robot("r1", "a", "b"), Robot("r2", "b", "a"))
-    plans = tuple(Plan(each.id, (Visit(each.start, 0, 1), Visit(each.goal, 1, 2))) for each in robots)
-    shown = opened(driver, tmp_path, Instance(ResourceGraph(resources, edges), robots), Solution(plans, ("r1", "r2")))
-
-    def red(time: float) -> object:
-        shown.script(f"viewer.clock.set({time})")
-        return shown.number("[...new Set(viewer.map.broken.flatMap((each) => each.places))].sort()")
-
-    assert [red(time) for time in (0, 0.5, 1, 1.5, 2)] == [[], [0, 1], [0, 1], [0, 1], []]
 
 
 def test_an_instance_alone_is_a_map_without_a_clock(
@@ -269,24 +215,6 @@ def at_robot(shown: Page, name: str, *events: str, right: int = 0) -> None:
 VIEW = "[viewer.map.x, viewer.map.y, viewer.map.scale]"
 
 
-def test_choosing_a_robot_zooms_to_it_and_keeps_it_in_sight(
-    driver: Chrome, tmp_path: Path, warehouse: tuple[Instance, Solution]
-) -> None:
-    shown = opened(driver, tmp_path, *warehouse)
-    assert shown.number("viewer.map.isWhole")
-    small = shown.number("viewer.map.scale")
-    shown.script("document.querySelectorAll('#robots button')[7].click()")
-    assert shown.number("viewer.map.scale") > 2 * small
-    for _ in range(12):
-        shown.press(Keys.ARROW_RIGHT)
-        x, y, _ = shown.robots()["r7"]
-        at = shown.number(f"[viewer.map.px({x}), viewer.map.py({y}), viewer.map.size.width, viewer.map.size.height]")
-        assert 0 <= at[0] <= at[2]
-        assert 0 <= at[1] <= at[3]
-    shown.press("0")
-    assert shown.number("viewer.map.scale") == small
-
-
 def test_the_map_is_moved_by_dragging_and_keys_and_zoomed_by_wheel_pinch_and_keys(
     driver: Chrome, tmp_path: Path, warehouse: tuple[Instance, Solution]
 ) -> None:
@@ -316,16 +244,6 @@ def test_the_map_is_moved_by_dragging_and_keys_and_zoomed_by_wheel_pinch_and_key
             x,
         )
     assert shown.number(VIEW)[2] == pytest.approx(min(4, 2 * wheeled))
-
-
-def test_robots_that_wait_in_a_circle_are_shown(driver: Chrome, tmp_path: Path) -> None:
-    instance, solution = rotation()
-    shown = opened(driver, tmp_path, instance, solution)
-    shown.press("l")
-    assert shown.text("about").endswith("4 robots wait for others, 4 of them in a circle.")
-    assert sorted(shown.number("(viewer.map.draw(), viewer.map.waits)")) == [[0, 1], [1, 2], [2, 3], [3, 0]]
-    shown.press(Keys.ARROW_RIGHT)
-    assert shown.text("about").endswith("0 robots wait for others.")
 
 
 def test_robots_are_where_the_trace_says_and_rings_where_they_were_to_be(driver: Chrome, tmp_path: Path) -> None:
@@ -378,29 +296,6 @@ def test_a_click_in_the_chart_goes_to_its_tick_and_robot(collision: Page) -> Non
     )
     assert collision.tick == "tick 3 of 5"
     assert [each[:2] for each in collision.chosen("robots")] == ["r2"]
-
-
-def test_the_chart_draws_windows_stays_and_violations(collision: Page) -> None:
-    wait_for(collision, CHART_IS_DRAWN)
-    colours = set(
-        collision.script(
-            "const canvas = document.getElementById('chart');"
-            "const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;"
-            "const seen = new Set();"
-            "for (let at = 0; at < data.length; at += 4) seen.add(`${data[at]},${data[at + 1]},${data[at + 2]}`);"
-            "return [...seen]"
-        )
-    )
-    window, first, second, wrong = "220,235,220", "0,114,178", "230,159,0", "193,18,31"
-    assert {window, first, second, wrong} <= colours
-
-
-def test_robots_are_found_by_name(collision: Page) -> None:
-    collision.click("#find")
-    collision.press("2")
-    assert collision.script("return document.querySelectorAll('#robots button:not([hidden])').length") == 1
-    collision.press(Keys.SPACE)
-    assert collision.text("play") == "Play"
 
 
 def test_hostile_ids_are_only_text(driver: Chrome, tmp_path: Path) -> None:

@@ -9,9 +9,8 @@ from tests.oracle.viewing import picture_of, scene_of
 from tests.profiles import draws
 
 from carp_spec import Instance, Plan, Solution, Visit, judge
-from carp_spec.windows import occupancy
 from carproof.testing.strategies import instances
-from carproof.viewer.lanes import lanes, lasts, occupations
+from carproof.viewer.lanes import lasts
 from carproof.viewer.page import view
 from carproof.viewer.stills import view_chart, view_map
 
@@ -57,15 +56,6 @@ def test_the_page_shows_every_visit_and_violation(case: tuple[Instance, Solution
 def test_no_two_robots_stand_in_one_lane_at_a_time(case: tuple[Instance, Solution]) -> None:
     scene = scene_of(view(*case, title="any").decode())
     assert none_overlap((stand, enter, leave) for track in scene["tracks"] for stand, enter, leave in track["stays"])
-
-
-@settings(max_examples=draws(300))
-@given(st.lists(st.builds(Visit, st.just("a"), TICKS, st.none() | TICKS)))
-def test_lanes_hold_one_stay_at_a_time_and_are_as_few_as_can_be(visits: list[Visit]) -> None:
-    stays = [stay for _, _, stay in occupations([Plan("r1", (visit,)) for visit in visits]).get("a", [])]
-    taken = list(lanes(stays))
-    assert none_overlap((lane, enter, leave) for lane, (enter, leave) in zip(taken, stays, strict=True))
-    assert len(set(taken)) == max((occupancy(stays, tick) for tick in range(-5, LATEST)), default=0)
 
 
 def none_overlap(stays: Iterable[tuple[int, int, int | None]]) -> bool:

@@ -25,14 +25,6 @@ def plant() -> tuple[Instance, Solution]:
     return instance, Solution.of(instance, [Plan("tow", visits)])
 
 
-def without_positions(document: Document) -> Document:
-    """The instance without the positions of its resources."""
-    nodes = [
-        {key: value for key, value in node.items() if key not in ("x", "y")} for node in document["graph"]["nodes"]
-    ]
-    return {**document, "graph": {**document["graph"], "nodes": nodes}}
-
-
 def drawn(carproof: Run, folder: Path, instance: Document, plans: Document, *options: str) -> str:
     """The file that `carproof view` makes."""
     (folder / "town.json").write_text(json.dumps(instance))
