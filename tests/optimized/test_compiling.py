@@ -58,6 +58,29 @@ def test_compiling_is_told_once_and_done_again_only_after_a_change(tmp_path: Pat
     assert call_entries(tmp_path) == ("4 6\n", NOTICE)
 
 
+def test_a_later_source_in_any_folder_of_a_package_has_it_compiled_again(tmp_path: Path) -> None:
+    room = tmp_path / "town" / "room"
+    room.mkdir(parents=True)
+    (room.parent / "__init__.py").touch()
+    (room / "doors.py").touch()
+    asked = f"""
+import os
+from carp_optimized.jit.compiling import is_compiled, note_that_it_is_compiled
+note_that_it_is_compiled("town")
+print(is_compiled("town"))
+os.utime("{room}/doors.py", (1 << 40, 1 << 40))
+print(is_compiled("town"))
+"""
+    environment = {
+        **os.environ,
+        "NUMBA_CACHE_DIR": str(tmp_path),
+        "NUMBA_DISABLE_JIT": "0",
+        "PYTHONPATH": str(tmp_path),
+    }
+    done = subprocess.run([sys.executable, "-c", asked], env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout == "True\nFalse\n"
+
+
 def test_two_first_runs_at_the_same_time_do_not_disturb_each_other(tmp_path: Path) -> None:
     (tmp_path / "entries.py").write_text(ENTRIES)
     processes = [start(tmp_path) for _ in range(2)]

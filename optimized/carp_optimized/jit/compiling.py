@@ -123,8 +123,8 @@ def is_compiled(package: str) -> bool:
     if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
         return True
     record = _record(package)
-    sources = (source for name in {"carp_optimized", package} for source in _folder(name).glob("*.py"))
-    return record is not None and record.exists() and record.stat().st_mtime >= max(s.stat().st_mtime for s in sources)
+    newest = _newest(_folder("carp_optimized"), _folder(package))
+    return record is not None and record.exists() and record.stat().st_mtime >= newest
 
 
 def note_that_it_is_compiled(package: str) -> None:
@@ -183,9 +183,13 @@ def is_cached(function: Callable[..., object]) -> bool:
     Code that is older than any source of this package or the function's does not count: numba looks at the source of
     the function alone, not at those of the functions that it calls.
     """
-    packages = {_package(Path(__file__)), _package(Path(unwrap(function).__code__.co_filename))}
-    newest = max(source.stat().st_mtime for package in packages for source in package.rglob("*.py"))
+    newest = _newest(_package(Path(__file__)), _package(Path(unwrap(function).__code__.co_filename)))
     return any(index.stat().st_mtime >= newest for index in _indices(function))
+
+
+def _newest(*packages: Path) -> float:
+    """When the newest source of packages was changed, in any of their folders."""
+    return max(source.stat().st_mtime for package in {*packages} for source in package.rglob("*.py"))
 
 
 def _package(source: Path) -> Path:
