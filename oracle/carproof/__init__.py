@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from carp_optimized import add as add
     from carp_optimized import assign as assign
     from carp_optimized import query as query
-    from carp_optimized.improve.anytime import plan_within as plan_within
     from carp_optimum.gap import Gap as Gap
     from carp_optimum.gap import PlannerGap as PlannerGap
     from carp_optimum.sat.core_guided import Optimum as Optimum
@@ -95,6 +94,7 @@ if TYPE_CHECKING:
     from carproof.api.judging import check_trace as check_trace
     from carproof.api.planning import certified_query as certified_query
     from carproof.api.planning import plan as plan
+    from carproof.api.planning import plan_within as plan_within
     from carproof.api.planning import polish as polish
     from carproof.api.searching import bound as bound
     from carproof.api.searching import optimality_gap as optimality_gap

@@ -3,10 +3,16 @@
 import os
 import subprocess
 import sys
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
 from tests.oracle.running import Run
+from tests.spec.making import VANISHING
+
+import carproof
+from carproof import Instance
 
 
 @pytest.fixture
@@ -41,6 +47,22 @@ def test_a_limit_of_time_begins_when_the_planner_is_compiled(
 
     monkeypatch.setattr(timed, begin)
     assert "Begins" in carproof(command).stderr
+
+
+@pytest.mark.parametrize(
+    "search",
+    [
+        partial(carproof.plan_within, seconds=0.1),
+        partial(carproof.bound, steps=1),
+        partial(carproof.optimum, limit=5),
+        partial(carproof.optimality_gap, planners=[carproof.Carp()], limit=5),
+    ],
+)
+def test_from_python_too_the_planner_is_compiled_before_a_limit_begins(
+    search: Callable[[Instance], object], uncompiled: list[str]
+) -> None:
+    search(VANISHING)
+    assert uncompiled == ["compiled"]
 
 
 @pytest.mark.usefixtures("folder")

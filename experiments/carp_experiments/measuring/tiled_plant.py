@@ -11,9 +11,10 @@ from os import times
 from pathlib import Path
 
 import carp_optimized
+import carproof
 from carp_experiments.measuring.tiling import core_of, tiled
 from carp_optimized.fleet import PlannedFleet
-from carp_optimized.improve.anytime import nearest_first, plan_within
+from carp_optimized.improve.anytime import nearest_first
 from carp_optimized.improve.holding import plan_holding_starts
 from carp_spec import Carp, Instance, Solution, judge
 from carproof.layouts import Settings, import_layout, read_layout
@@ -83,7 +84,7 @@ def _row(instance: Instance) -> str:
     planners: tuple[Callable[[], Solution], ...] = (
         lambda: carp_optimized.plan(instance, Carp()),
         lambda: plan_holding_starts(instance, by_way, lambda _: True),
-        lambda: plan_within(instance, seconds=SECONDS),
+        lambda: carproof.plan_within(instance, seconds=SECONDS),
     )
     for make in planners:
         started = _processor_seconds()

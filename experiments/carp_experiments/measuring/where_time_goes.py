@@ -14,7 +14,6 @@ from time import process_time
 from typing import TypeVar
 
 import carproof
-from carp_optimized.improve.anytime import plan_within
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.markdown import markdown_table, write_section
 
@@ -56,7 +55,7 @@ def rows_of(robots: int) -> dict[str, str]:
     instance = timed("read the instance", lambda: carproof.read_instance(data))
     timed("a pass of CARP", lambda: carproof.plan(instance, carproof.Carp(), repair=False))
     profile = Profile(builtins=False)
-    found = profile.runcall(plan_within, instance, seconds=SECONDS, clock=process_time)
+    found = profile.runcall(carproof.plan_within, instance, seconds=SECONDS, clock=process_time)
     rows |= {f"plan: {name}": share for name, share in shares_of(profile).items()}
     text = timed("write the plans", lambda: carproof.write_solution(found))
     plans = timed("read the plans", lambda: carproof.read_solution(text))
@@ -82,7 +81,7 @@ def shares_of(profile: Profile) -> dict[str, str]:
 def profile_table() -> str:
     """The table, a column for each number of robots."""
     carproof.plan(instance_of(100))  # so that nothing is compiled in what is timed
-    plan_within(instance_of(100), seconds=1)
+    carproof.plan_within(instance_of(100), seconds=1)
     columns = {robots: rows_of(robots) for robots in SIDES}
     heads = ["", *(f"{robots:,} on {side} x {side}" for robots, side in SIDES.items())]
     return markdown_table(

@@ -42,28 +42,12 @@ def plan_within(
     seed: int = 0,
     advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
     clock: Callable[[], float] = perf_counter,
-) -> Solution:
-    """The best plans that are found in that many seconds, 10 unless given; `advance` gets rounds, unplanned and total.
-
-    With `iterations`, first plans are improved by that many rounds: equal iterations and seed give an equal solution
-    on every machine. With seconds they need not. Robots that have no plan when the time is over are unplanned. The
-    compilation of the planner, which happens once, is not part of the time: `python -m carp_optimum` makes it happen.
-    Raises `Refusal` for wrong options, and for numbers that are too large.
-    """
-    return find_within(instance, iterations, seconds, seed=seed, advance=advance, clock=clock).solution
-
-
-def find_within(
-    instance: Instance,
-    iterations: int | None,
-    seconds: float | None,
-    *,
-    seed: int = 0,
-    advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
-    clock: Callable[[], float] = perf_counter,
     finish: Callable[[Solution], object] = lambda _: None,
 ) -> Found:
-    """The same, where the caller then has to `finish` with the solution within the seconds."""
+    """The best plans that are found in that many seconds, as `carproof.plan_within` does.
+
+    The time to `finish` with the solution, which the caller does, is part of the seconds. So is that of compiling.
+    """
     require_instance(instance)
     require_polish_options(iterations, seconds, seed)
     if iterations is None and seconds is None:

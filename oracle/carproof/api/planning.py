@@ -1,12 +1,13 @@
 """Plans of all robots by any planner, and plans of one robot with their certificates."""
 
 from collections.abc import Callable, Sequence
+from time import perf_counter
 
 from carp_spec import Instance, Plan, Planner, RobotId, Solution
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.planners import BY_DEFAULT
 from carp_spec.requests import require_query
-from carproof.engines import engine_named, repaired, repairs_by_default
+from carproof.engines import engine_named, repaired, repairs_by_default, warm
 
 
 def plan(instance: Instance, planner: Planner | None = None, *, repair: bool | None = None) -> Solution:
@@ -19,6 +20,31 @@ def plan(instance: Instance, planner: Planner | None = None, *, repair: bool | N
     chosen = BY_DEFAULT if planner is None else planner
     solution = engine_named(None).plan(instance, chosen)
     return repaired(instance, solution) if (repairs_by_default(chosen) if repair is None else repair) else solution
+
+
+def plan_within(
+    instance: Instance,
+    *,
+    iterations: int | None = None,
+    seconds: float | None = None,
+    seed: int = 0,
+    advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
+    clock: Callable[[], float] = perf_counter,
+) -> Solution:
+    """The best plans that are found in that many seconds, 10 unless given; `advance` gets rounds, unplanned and total.
+
+    With `iterations`, first plans are improved by that many rounds: equal iterations and seed give an equal solution
+    on every machine. With seconds they need not. Robots that have no plan when the time is over are unplanned. The
+    time, that of `clock`, begins when the planner is compiled, which happens once. Raises `Refusal` for a malformed
+    instance, wrong options, and numbers that are too large.
+    """
+    warm()
+    from carp_optimized.improve import anytime  # noqa: PLC0415 - numba is slow to load
+
+    found = anytime.plan_within(
+        instance, iterations=iterations, seconds=seconds, seed=seed, advance=advance, clock=clock
+    )
+    return found.solution
 
 
 def certified_query(

@@ -1,4 +1,7 @@
-"""Optima, bounds and gaps, with the time that commands and ops give them; they need the extra `prove`."""
+"""Optima, bounds and gaps, with the time that commands and ops give them; they need the extra `prove`.
+
+Their time begins when the planner is compiled, which happens once.
+"""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,6 +12,7 @@ from carp_optimum.sat.core_guided import Optimum
 from carp_spec import Instance, Planner
 from carp_spec.documents.bounds import BoundDocument
 from carp_spec.inputs.options import PROCESSES, SEARCH_SECONDS
+from carproof.engines import warm
 
 
 def optimum(instance: Instance, limit: float = SEARCH_SECONDS, *, processes: int = PROCESSES) -> Optimum:
@@ -17,6 +21,7 @@ def optimum(instance: Instance, limit: float = SEARCH_SECONDS, *, processes: int
     The answer rests on the solver; `write_proof` writes a proof of it. Two `processes` are faster on two cores, and the
     answer is the same. Raises `Refusal` for a wrong limit, and if the formula outgrows the memory.
     """
+    warm()
     return found(instance, limit, processes=processes)
 
 
@@ -29,11 +34,13 @@ def bound(instance: Instance, seconds: float | None = None, steps: int | None = 
     """
     from carp_optimum.bound import lower_bound  # noqa: PLC0415 - slow to load
 
+    warm()
     return lower_bound(instance, seconds, steps)
 
 
 def optimality_gap(instance: Instance, planners: Sequence[Planner] = PLANNERS, limit: float = SEARCH_SECONDS) -> Gap:
     """Plan with every planner, and search for the optimum and the best order, each for at most `limit` seconds."""
+    warm()
     return gap(instance, planners, limit)
 
 

@@ -117,7 +117,7 @@ def _plan_within(
     seed: int,
     output: Output,
 ) -> Answer:
-    from carp_optimized.improve.anytime import find_within  # noqa: PLC0415 - numba is slow to load
+    from carp_optimized.improve.anytime import plan_within  # noqa: PLC0415 - numba is slow to load
 
     require_polish_options(iterations, seconds, seed)
     compiling = time_of_compiling()
@@ -132,7 +132,9 @@ def _plan_within(
 
         left = time_left(context, seconds, compiling)
         left = None if left is None else max(left, FOR_FIRST_PLANS)
-        found = find_within(problem, iterations, left, seed=seed, advance=advance, finish=write_solution)
+        found = plan_within(
+            problem, iterations=iterations, seconds=left, seed=seed, advance=advance, finish=write_solution
+        )
     if output.write(write_solution(found.solution)):
         time = perf_counter() - context.find_root().obj - compiling
         show_found(problem, found, f"best of {played} rounds", time)

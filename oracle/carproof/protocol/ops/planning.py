@@ -10,6 +10,7 @@ from carp_spec.documents.instances import InstanceDocument, StopDocument, instan
 from carp_spec.documents.solutions import SolutionDocument, solution_document, visits_document
 from carp_spec.planners import BY_DEFAULT
 from carp_spec.requests import require_new_robot, require_robot, require_tick
+from carproof.api import planning
 from carproof.engines import Engine, repaired, warm
 from carproof.protocol.ops.op import PolishOptions
 from carproof.requests import inside, sound_within
@@ -56,11 +57,8 @@ def plan(instance: Instance, planner: Planner | None = None, *, engine: Engine) 
 
 def plan_within(instance: Instance, *, options: PolishOptions) -> Solution:
     """Plan all robots as well as possible in `seconds`, 10 unless given, or by `iterations` rounds."""
-    warm()
-    from carp_optimized.improve.anytime import plan_within as within  # noqa: PLC0415 - numba is slow to load
-
     with inside("$.instance"):
-        return within(instance, **asdict(options))
+        return planning.plan_within(instance, **asdict(options))
 
 
 def add(
