@@ -7,7 +7,9 @@ depend on it, until one fails.
 import re
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from os import cpu_count
 from pathlib import Path
 from shutil import copy
 from tempfile import TemporaryDirectory
@@ -68,8 +70,8 @@ def is_in_proof(text: str, line: int) -> bool:
     return before.rfind("Proof.") > max(definitions, default=0)
 
 
-def survives(mutant: Mutant) -> bool:
-    """Whether no proof is broken by the mutant."""
+def broken_proof(mutant: Mutant) -> str | None:
+    """Where the mutant breaks a proof; `None` if it breaks none."""
     with TemporaryDirectory() as name:
         folder = Path(name)
         for built in BUILT.glob("*.vo"):
@@ -82,16 +84,22 @@ def survives(mutant: Mutant) -> bool:
             where = re.search(r"line (\d+)", compiled.stderr)
             if compiled.returncode != 0 and where is not None:
                 line = int(where[1])
-                sys.stdout.write(f"{mutant}\n    {file}, line {line}: {text.splitlines()[line - 1].strip()}\n")
-                return not is_in_proof(text, line)
-    return True
+                return (
+                    f"{file}, line {line}: {text.splitlines()[line - 1].strip()}" if is_in_proof(text, line) else None
+                )
+    return None
 
 
 def main() -> int:
     planted = mutants()
     for mutant in planted:
         mutated(mutant)
-    survivors = [mutant for mutant in planted if survives(mutant)]
+    survivors = []
+    with ThreadPoolExecutor(cpu_count()) as workers:
+        for mutant, where in zip(planted, workers.map(broken_proof, planted), strict=True):
+            sys.stdout.write(f"{mutant}\n    {where or 'breaks no proof'}\n")
+            if where is None:
+                survivors.append(mutant)
     sys.stdout.write(f"{len(planted)} errors planted, {len(survivors)} break no proof\n")
     sys.stdout.writelines(f"{mutant}\n" for mutant in survivors)
     return 1 if survivors or not planted else 0
