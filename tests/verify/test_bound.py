@@ -162,12 +162,6 @@ def test_wrong_prices_of_groups_are_refused(prices: tuple[tuple[str, int, int], 
     assert (refused.value.rule, refused.value.path) == (rule, f"$.groups[{len(prices) - 1}]")
 
 
-def test_a_horizon_far_beyond_the_last_price_costs_nothing() -> None:
-    certificate = lower_bound(crossing(), steps=500)
-    for horizon in (10**9, 10**99):
-        assert verify_bound(crossing(), msgspec.structs.replace(certificate, horizon=horizon)) == certificate.bound
-
-
 def test_prices_end_early_where_ticks_are_many_and_the_bound_holds_all_the_same() -> None:
     lane = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),))
     robots = (Robot("r", "a", "b", release=10**8), Robot("s", "b", "a", release=10**8))
@@ -197,26 +191,6 @@ def test_who_leaves_r_for_s_at_the_tick_comes_from_there_or_stays_in_r_pays_for_
         assert tariff.move(source, target, tick) == ((source, target, tick) in {("r", "s", 2), ("s", "r", 2)})
     for resource, enter, leave in product("rs", range(4), range(5)):
         assert tariff.stay(resource, enter, leave) == (resource == "r" and enter < 2 < leave)
-
-
-@pytest.mark.parametrize(
-    ("start", "prices", "least"),
-    [
-        ("a", (("b", 1, 12), ("a", 0, 3), ("a", 1, 1), ("a", 2, 5)), 2 * SCALE + 4),
-        ("a", (*(("a", tick, 50) for tick in range(1, 6)), *(("b", tick, 50) for tick in range(2, 6))), 6 * SCALE),
-        ("b", tuple(("b", tick, 50) for tick in range(1, 6)), 6 * SCALE),
-    ],
-    ids=[
-        "it waits where waiting has a price",
-        "it passes the place where it parks later",
-        "it leaves the place where it stands and parks",
-    ],
-)
-def test_the_cheapest_plan_is_found_where(start: str, prices: tuple[tuple[str, int, int], ...], least: int) -> None:
-    lane = ResourceGraph((Resource("a"), Resource("b"), Resource("c")), (("a", "b"), ("b", "c")))
-    instance = Instance(lane, (Robot("robot", start, "b"),), "park")
-    empty = BoundDocument(BOUND_FORMAT, digest(instance), 0, SCALE, HORIZON, prices, (), (), ())
-    assert completed(instance, empty).robots == (("robot", least),)
 
 
 def test_the_clock_is_looked_at_within_a_step_and_what_is_found_by_then_is_a_bound() -> None:

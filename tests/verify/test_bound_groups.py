@@ -27,12 +27,11 @@ from tests.verify.tampered_bounds import TAMPERED
 from carp_optimum.bound import lower_bound
 from carp_optimum.sat.solver import Solver
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
-from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument, Sight, read_bound
-from carp_spec.documents.decoding import write
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument, Sight
 from carp_spec.documents.instances import digest
 from carp_spec.plan_rules import plan_cost
 from carp_verify.bound.cuts import formula_of, formula_of_deadlines
-from carp_verify.bound.tariff import Fees, Tariff, fees_of
+from carp_verify.bound.tariff import Fees, Tariff
 from carp_verify.bound.verify import verify_bound
 from carproof.testing.strategies import Sizes, instances
 
@@ -78,24 +77,6 @@ def test_who_is_seen_in_a_place_on_the_way_pays_for_it_once(data: st.DataObject,
     ]
     tariff = Tariff(instance, certificate)
     assert least_cost_of(tariff, robot, SCALE, fees) == min(costs, default=None)
-
-
-@pytest.mark.parametrize(
-    ("prices", "fees", "least"),
-    [
-        ((), [(3, 10)], 4),  # comes after the deadline, although nothing else is priced
-        ((), [(3, 2)], 3),  # pays
-        ((), [(1, 1), (3, 1)], 3),  # pays both
-        ((("a", 1, 10 * SCALE),), [(2, 10)], 3),  # drives through the goal, as to wait is dear
-    ],
-)
-def test_a_robot_is_late_where_that_is_cheaper(
-    prices: tuple[tuple[str, int, int], ...], fees: list[tuple[int, int]], least: int
-) -> None:
-    lane = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
-    certificate = BoundDocument(BOUND_FORMAT, digest(lane), 0, SCALE, HORIZON, prices, (), (), ())
-    paid = [(tick, SCALE * price) for tick, price in fees]
-    assert least_cost_of(Tariff(lane, certificate), lane.robots[0], SCALE, Fees(paid)) == SCALE * least
 
 
 def test_deadlines_find_what_prices_alone_miss_and_carry_their_proofs() -> None:
@@ -149,29 +130,6 @@ def test_a_robot_that_vanishes_may_have_passed_its_goal_when_it_is_seen() -> Non
     assert not Solver(formula_of_deadlines(lane, earlier, 100), lambda: None).satisfiable([])
 
 
-def test_deadlines_and_sights_are_written_where_there_are_some() -> None:
-    for certificate, written in (
-        (lower_bound(crossing(), steps=2), []),
-        (deadline_certificate(), [b"deadlines"]),
-        (sight_certificate(), [b"deadlines", b"seen"]),
-    ):
-        assert read_bound(write(certificate)) == certificate
-        assert [field for field in (b"deadlines", b"seen") if field in write(certificate)] == written
-
-
-def test_who_arrives_after_it_is_seen_pays_nothing_and_who_waits_where_it_is_seen_pays() -> None:
-    deadlines = DeadlinesDocument(("r0", "r2"), (5, 0), 3, "", ((1, ("middle",)), (2, ())))
-    fees = fees_of(crossing(), [deadlines])["r0"]
-    assert [fees.at_arrival(tick) for tick in range(4)] == [3, 3, 0, 0]
-    assert [fees_of(crossing(), [deadlines])["r2"].at_arrival(tick) for tick in range(4)] == [3, 0, 0, 0]
-    assert [fees.on_the_way("middle", tick, tick + 1) for tick in range(3)] == [0, 3, 0]
-    assert fees.on_the_way("north", 0, 9) == 0
-    lane = Instance(ResourceGraph(tuple(map(Resource, "abc")), (("a", "b"), ("b", "c"))), (Robot("r", "a", "c"),))
-    certificate = BoundDocument(BOUND_FORMAT, digest(lane), 0, SCALE, HORIZON, (("b", 1, 9 * SCALE),), (), (), ())
-    waits = Fees([], [(1, ("a",), SCALE)])
-    assert least_cost_of(Tariff(lane, certificate), lane.robots[0], SCALE, waits) == 4 * SCALE
-
-
 def test_who_is_seen_several_times_pays_for_each_tick_of_its_stay_in_whatever_order_they_are_named() -> None:
     sights = [(3, {"a"}, 1), (1, {"a", "b"}, 2), (2, {"b"}, 4), (0, {"a"}, 8), (2, {"a"}, 16)]
     fees = Fees([], sights)
@@ -179,12 +137,6 @@ def test_who_is_seen_several_times_pays_for_each_tick_of_its_stay_in_whatever_or
         paid = sum(price for tick, places, price in sights if first <= tick < end and resource in places)
         assert fees.on_the_way(resource, first, end) == paid
     assert (fees.last, Fees([(5, 1)], sights).last) == (3, 5)
-
-
-def test_robots_are_not_seen_in_a_certificate_where_they_may_not_be() -> None:
-    certificate = lower_bound(crossing(), steps=1500, seen=False)
-    assert certificate.deadlines
-    assert not any(deadlines.seen for deadlines in certificate.deadlines)
 
 
 def test_a_robot_pays_only_where_it_is_seen() -> None:

@@ -98,28 +98,3 @@ def test_the_formula_of_a_robot_that_is_seen_twice_has_a_model_just_where_one_of
             sights = [(deadline, first, places), (2, first + later, others)]
             is_kept = any(all(keeps(plan, due, seen, frozenset(at)) for due, seen, at in sights) for plan in plans)
             assert may_keep(instance, sights) == is_kept
-
-
-@pytest.mark.parametrize("slow", ["b", "c"])
-@pytest.mark.parametrize("ends", [("ca", "ab"), ("bc", "cb"), ("ab", "ca")])
-def test_two_robots_that_are_seen_are_refuted_only_where_no_plans_keep_both_deadlines(
-    ends: tuple[str, str], slow: str
-) -> None:
-    one, other = (Robot(release, end[0], end[1], release) for release, end in enumerate(ends))
-    instance = lane_of(slow, one, other)
-    pairs = [
-        pair for pair in product(plans_of(instance, one), plans_of(instance, other)) if not violated(instance, pair)
-    ]
-    refuted = 0
-    for deadline, seen, places, others in product((0, 4), range(5), " abc", " abc"):
-        for second in ((deadline, seen, others.strip()), (deadline, seen + 1, others.strip()), (4, 2, others.strip())):
-            first = (deadline, seen, places.strip())
-            is_kept = any(
-                keeps(plan, first[0], first[1], frozenset(first[2]))
-                and keeps(beside, second[0], second[1], frozenset(second[2]))
-                for plan, beside in pairs
-            )
-            is_refuted = not may_keep(instance, [first, second])
-            assert not (is_kept and is_refuted)
-            refuted += is_refuted
-    assert refuted > 300
