@@ -3,18 +3,13 @@ from collections.abc import Iterator
 from itertools import count
 
 import pytest
-from hypothesis import given, settings
-from tests.profiles import draws
 from tests.spec.making import grid, row
-from tests.verify.tiny import TINY
 
 from carp_optimum.optimum import optimum
 from carp_spec import AfterGoal, Instance, Refusal, Resource, ResourceGraph, Robot, judge
 from carp_verify.optimum.encoding import Encoding
-from carp_verify.optimum.joint_search import least_total_cost
 from carp_verify.optimum.unsolvable import describe
 from carproof.generate import Fleet, Grid, grid_instance
-from carproof.testing.strategies import instances
 
 LONG = 60
 
@@ -28,18 +23,6 @@ def turned_ring(size: int, after_goal: AfterGoal = "vanish") -> Instance:
     cells = [(x, y) for y in range(size) for x in range(size) if (x, y) != (size // 2, size // 2)]
     robots = (Robot(i, f"{x},{y}", f"{size - 1 - x},{size - 1 - y}") for i, (x, y) in enumerate(cells))
     return on_grid(size, *robots, after_goal=after_goal)
-
-
-@settings(max_examples=draws(1200))
-@given(instances(TINY, least_robots=2))
-def test_the_optimum_is_that_of_the_joint_search(instance: Instance) -> None:
-    best = optimum(instance, LONG)
-    assert best.decided
-    assert best.cost == least_total_cost(instance)
-    if best.cost is not None:
-        assert best.solution is not None
-        verdict = judge(instance, best.solution)
-        assert (verdict.violations, verdict.unplanned, verdict.cost) == ((), 0, best.cost)
 
 
 @pytest.mark.parametrize(
