@@ -5,14 +5,13 @@ have plans by CARP, and 40 more are added by the client and by the core in turns
 and of the wall's.
 """
 
-import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
 from statistics import median
 from time import perf_counter, process_time
 
-import msgspec
+from tests.bench.soak import Server
 
 from carp_optimized import plan
 from carp_optimized.fleet import PlannedFleet
@@ -24,28 +23,9 @@ from carproof.generate import Fleet, Range, Warehouse, warehouse_instance
 TIMES = 40
 
 
-class Client:
-    """A server and the lines to and from it."""
-
-    def __init__(self) -> None:
-        command = [sys.executable, "-m", "carproof", "serve"]
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        self.ask(op="start", version=1)
-        children = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text()
-        self.worker = children.split()[0]
-
-    def ask(self, **fields: object) -> dict[str, object]:
-        """The result of a request."""
-        assert self.process.stdin is not None
-        assert self.process.stdout is not None
-        self.process.stdin.write(msgspec.json.encode({"id": 1, **fields}) + b"\n")
-        self.process.stdin.flush()
-        answer: dict[str, dict[str, object]] = msgspec.json.decode(self.process.stdout.readline())
-        return answer["result"]
-
-    def processor_seconds(self) -> float:
-        """What the server has used."""
-        return int(Path(f"/proc/{self.worker}/schedstat").read_text().split()[0]) / 1e9
+def processor_seconds(server: Server) -> float:
+    """What the process of the server that plans has used."""
+    return int(Path(f"/proc/{server.processes[1]}/schedstat").read_text().split()[0]) / 1e9
 
 
 def measure(robots: int) -> str:
@@ -53,19 +33,19 @@ def measure(robots: int) -> str:
     whole = warehouse(robots + TIMES)
     first, more = replace(whole, robots=whole.robots[:robots]), whole.robots[robots:]
     solution = plan(first, Carp())
-    client, core = Client(), PlannedFleet(first)
+    client, core = Server(), PlannedFleet(first)
     core.commit(solution.plans)
     client.ask(op="fleet/open", fleet="f", instance=instance_document(first), solution=solution_document(solution))
     alone, serving, asking, walls = [], [], [], []
     for number, robot in enumerate(more, robots):
-        served = client.processor_seconds()
+        served = processor_seconds(client)
         before = perf_counter(), process_time()
         answer = client.ask(op="fleet/add", fleet="f", robot=robot_document(robot))
         after = perf_counter(), process_time()
         walls.append(after[0] - before[0])
         asking.append(after[1] - before[1])
-        serving.append(client.processor_seconds() - served)
-        assert answer["now"] == 0
+        serving.append(processor_seconds(client) - served)
+        assert answer["result"]["now"] == 0
         start = process_time()
         core.add(core.enlist(robot), 0, Neighbourhood(), number)
         alone.append(process_time() - start)

@@ -7,7 +7,6 @@ changes nothing, a server whose client has vanished ends, and its memory stays f
 after so many minutes the clients stop, and say how many requests they have asked.
 """
 
-import json
 import subprocess
 import sys
 from collections import Counter
@@ -73,7 +72,7 @@ class Server:
         assert self.process.stdout is not None
         self.process.stdin.write(line + b"\n")
         self.process.stdin.flush()
-        answer: dict[str, Any] = json.loads(self.process.stdout.readline())
+        answer: dict[str, Any] = msgspec.json.decode(self.process.stdout.readline())
         return answer
 
     def ask(self, **fields: object) -> dict[str, Any]:

@@ -77,17 +77,6 @@ def test_the_bound_rises_and_the_plans_get_cheaper_until_they_meet(instance: Ins
 
 
 @pytest.mark.usefixtures("beside_at_once")
-@settings(max_examples=draws(100), suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(instances(TINY, least_robots=2))
-def test_the_optimum_of_tiny_instances_is_found_with_a_background_search(instance: Instance) -> None:
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(BackgroundSearch, "latest", None)  # depends on the clock
-        found = optimum(instance, SECONDS)
-    assert found.decided
-    assert found.cost == least_total_cost(instance)
-
-
-@pytest.mark.usefixtures("beside_at_once")
 @pytest.mark.parametrize("in_thread", [False, True])
 def test_the_optimum_is_the_same_in_one_process_and_in_two_and_in_a_thread(in_thread: bool) -> None:
     instance = town(7, "park")

@@ -1,7 +1,6 @@
 """The neighbourhood planner: counts, candidates, rounds, fallback."""
 
 from collections.abc import Iterator, Sequence
-from math import perm
 
 import pytest
 from tests.spec.making import grid, instance, line, plan_of
@@ -9,44 +8,10 @@ from tests.spec.making import grid, instance, line, plan_of
 import carp_reference
 from carp_reference import neighbourhood
 from carp_reference.problem import Problem
-from carp_reference.query import find_plan
 from carp_spec import Carp, Instance, Neighbourhood, Plan, Resource, ResourceGraph, RobotId, Solution, judge, total_cost
 from carp_spec.permutations import splitmix64
 
 EMPTY = Solution((), (), ())
-
-
-class CountedQueries:
-    """Stands in for the query and counts the calls that ask about members of the neighbourhood."""
-
-    def __init__(self) -> None:
-        self.asked = 0
-
-    def __call__(self, problem: Problem, committed: Sequence[Plan], robot: RobotId) -> Plan | None:
-        self.asked += 1
-        return find_plan(problem, committed, robot)
-
-
-@pytest.mark.parametrize(("members", "queries"), [(4, 64), (5, 325), (6, 1956)])
-def test_orders_that_begin_alike_share_queries(members: int, queries: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    rows = [(f"0,{row}", f"2,{row}") for row in range(members)]
-    apart = instance(grid(3, members), *rows)
-    counted = CountedQueries()
-    monkeypatch.setattr(neighbourhood, "find_plan", counted)
-    solution = EMPTY
-    for robot in apart.robots:
-        counted.asked = 0
-        solution = carp_reference.add(apart, solution, robot.id, 0, Neighbourhood(m=members, baseline=False))
-    smaller_rounds = sum(perm(size, first) for size in range(2, members) for first in range(1, size + 1))
-    shortest_path = 1
-    replanned = counted.asked - shortest_path - smaller_rounds - queries
-    assert 0 <= replanned <= (members - 1) * (members - 2) // 2
-
-
-def test_the_first_robot_is_planned_by_itself_in_paper_mode_too() -> None:
-    one = instance(line("abc"), ("a", "c"))
-    for m in (1, 4):
-        assert carp_reference.plan(one, Neighbourhood(m=m, baseline=False)).order == ("r0",)
 
 
 def in_each_others_way() -> Instance:
