@@ -84,10 +84,6 @@ def believing(
     return answer
 
 
-def same(each: Resource | Robot) -> Resource | Robot:
-    return each
-
-
 def ends(solution: Solution) -> int:
     return max((plan.visits[-1].enter for plan in solution.plans), default=0)
 

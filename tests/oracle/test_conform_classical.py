@@ -161,22 +161,3 @@ def test_a_prioritized_planner_is_complete_in_context_and_not_complete() -> None
     assert {finding.rule for finding in report.findings} == {"program/complete"}
     wrong = [outcome.case.name for outcome in report.outcomes if outcome.finding is not None]
     assert "plan: one must make room for the other, park" in wrong
-
-
-@pytest.mark.parametrize(
-    ("arguments", "error"),
-    [
-        (["--one-shot", "--", "cat", "{map}"], "must hold {instance}, or {map} and {scen}"),
-        (["--one-shot", "--", "cat", "{solution}"], "must hold {instance}, or {map} and {scen}"),
-        (["--from", "lacam", "--", "cat"], "--from concerns the files that programs write with --one-shot"),
-        (
-            ["--one-shot", "--level", "exact", "--", "cat", "{map}", "{scen}"],
-            "--level must be one of sound, complete, optimal",
-        ),
-        (["--one-shot", "--level", "exact", "--", "cat", "{instance}"], "--level must be one of sound, complete-in"),
-    ],
-)
-def test_wrong_usage_is_one_sentence(carproof: Run, arguments: list[str], error: str) -> None:
-    outcome = carproof("conform", *arguments)
-    assert (outcome.code, outcome.stdout) == (2, "")
-    assert error in " ".join(outcome.stderr.split())

@@ -181,20 +181,6 @@ def test_a_failing_execution_is_saved_and_asked_again_with_its_delays(tmp_path: 
     assert saved["cases"][0]["claim"]["format"] == "carproof-trace/1"
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        (["--level", "complete"], "Of an executor --level must be one of sound, exact."),
-        (["--one-shot"], "--executor can be combined with neither --one-shot nor --kernel."),
-        (["--kernel"], "--executor can be combined with neither --one-shot nor --kernel."),
-    ],
-)
-def test_questions_that_no_executor_can_be_asked_are_bad_usage(carproof: Run, options: list[str], message: str) -> None:
-    outcome = carproof("conform", "--executor", *options, "--", sys.executable)
-    assert outcome.code == 2
-    assert message in outcome.stderr
-
-
 def test_an_executor_must_offer_to_drive(tmp_path: Path) -> None:
     planner = tmp_path / "planner.py"
     planner.write_text(Path(executors.__file__).read_text().replace('["drive"]', '["plan"]'))

@@ -187,11 +187,3 @@ def test_command_op_and_python_agree(carproof: Run, process: Run, elsewhere: Pat
 def test_a_step_that_is_none_is_refused(cells: int) -> None:
     with pytest.raises(Refusal, match="footprint/cells"):
         check(*floor([(0, 0)]), footprint=Footprint(1, 1), cells=cells)
-
-
-@pytest.mark.parametrize("options", ["--cells 1m", "--footprint 450mm --cells 0.5mm", "--footprint 450mm --cells 1"])
-def test_cells_that_are_wrong_are_refused(carproof: Run, elsewhere: Path, options: str) -> None:
-    instance, solution = floor([(0, 0)])
-    (elsewhere / "grid.json").write_bytes(write_instance(instance))
-    (elsewhere / "plans.json").write_bytes(write_solution(solution))
-    assert carproof(f"check grid.json plans.json {options}").code == 2

@@ -1,12 +1,10 @@
 """Cells split by heading: the moves F, R, C and W of the League of Robot Runners 2023 and 2024, in unit time."""
 
-import json
 from itertools import pairwise
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.oracle.running import Run
 
 from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, Robot, Solution, Visit, judge
 from carproof.engines import engine_named
@@ -78,14 +76,6 @@ def test_a_robot_arrives_as_early_as_actions_bring_it_and_a_tick_more(seed: int)
         reached |= {state for each in reached for action in "FRC" if (state := after(each, action))}
         ticks += 1
     assert found.visits[-1].enter == ticks + 1
-
-
-def test_generate_splits_the_cells_of_grids_and_warehouses(carproof: Run) -> None:
-    made = json.loads(carproof("generate grid --width 4 --height 3 --robots 3 --headings --json").stdout)
-    assert len(made["graph"]["nodes"]) == 5 * 12
-    assert len(made["graph"]["groups"]) == 12
-    assert carproof("generate warehouse --headings --json").code == 0
-    assert carproof("generate warehouse --headings --orders pick-and-drop").code == 2
 
 
 @pytest.mark.parametrize("where", [(None, None), (2, 0), (1, 1), (0, 0)])

@@ -8,7 +8,7 @@ import msgspec
 import pytest
 from tests.oracle.running import EAST, Outcome, Run, corridor, save, solution
 from tests.oracle.test_optimum import UNSOLVABLE
-from tests.verify.bound_examples import crossing, cut_certificate, deadline_certificate
+from tests.verify.bound_examples import crossing, deadline_certificate
 from tests.verify.kernel_program import program
 
 import carp_verify.kernel
@@ -110,13 +110,6 @@ def test_a_kernel_refuses_with_python_or_contradicts_it(  # noqa: PLR0913, PLR09
     assert ("Internal contradiction: " in outcome.stderr) == (code == 70)
 
 
-def test_a_size_that_only_python_refuses_is_no_contradiction(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    far = 10**9
-    save(bound={**json.loads(Path("bound.json").read_text()), "horizon": far, "resources": [["a", far - 1, 1]]})
-    stand_in(monkeypatch, verdict="accepted", bound=5)
-    assert carproof(COMMANDS[4]).code == 0
-
-
 def test_a_certificate_of_another_instance_is_refused_whatever_the_kernel_says(
     carproof: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -169,37 +162,6 @@ def test_a_kernel_that_differs_is_a_contradiction(carproof: Run, monkeypatch: py
     assert "Internal contradiction: " in outcome.stderr
 
 
-def test_a_refusal_that_the_kernel_shares_is_shown_with_the_violations_of_the_specification(
-    carproof: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    stand_in(monkeypatch, verdict="refused", rule="joint/capacity", message="it is wrong")
-    outcome = carproof("check town.json broken.json --kernel")
-    assert outcome.code == 1
-    assert "[joint/capacity]" in outcome.stdout
-    assert outcome.stdout.endswith(f"decided by {PROGRAM} 7\n")
-
-
-@pytest.mark.parametrize(
-    "answer", [{"bound": 6, "cost": 5}, {"bound": 5, "cost": 4}, {"bound": 5, "cost": 5, "unplanned": 1}]
-)
-def test_a_kernel_that_proves_something_else_is_a_contradiction(
-    carproof: Run, monkeypatch: pytest.MonkeyPatch, answer: dict[str, int]
-) -> None:
-    stand_in(monkeypatch, verdict="accepted", **{"unplanned": 0, **answer})
-    outcome = carproof("verify proof")
-    assert (outcome.code, "Internal contradiction: " in outcome.stderr) == (70, True)
-
-
-def test_a_proof_is_verified_without_a_kernel_that_cannot_decide(
-    carproof: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    stand_in(monkeypatch, verdict="undecided", message="too large")
-    decided = carproof("verify proof")
-    assert (decided.code, decided.stderr, "decided by" in decided.stdout) == (0, "", False)
-    monkeypatch.setenv(VARIABLE, "nowhere")
-    assert carproof("verify proof") == decided
-
-
 def test_the_kernel_proves_an_optimum_and_no_obstacle_but_clauses(
     carproof: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -238,22 +200,6 @@ def test_a_certificate_is_written_too_where_there_is_no_plan(carproof: Run) -> N
         assert carproof(f"query park.json stands.json r1 --certificate query.json --engine {engine}").code == 1
         verified = carproof("verify park.json stands.json query.json")
         assert verified.stdout.splitlines()[-1].split()[2] == "never"
-
-
-def test_a_bound_with_cuts_is_verified_by_the_kernel(carproof: Run, folder: Path) -> None:
-    program()
-    certificate = cut_certificate()
-    (folder / "town.json").write_bytes(write_instance(crossing()))
-    (folder / "bound.json").write_bytes(write(certificate))
-    outcome = carproof(COMMANDS[-1])
-    assert (outcome.code, outcome.stderr) == (0, "")
-    document = json.loads(carproof(COMMANDS[-1], "--json").stdout)
-    assert (document["bound"], document["assumed"]) == (certificate.bound, [])
-    cuts = (msgspec.structs.replace(certificate.cuts[0], refutation=""), *certificate.cuts[1:])
-    (folder / "bound.json").write_bytes(write(msgspec.structs.replace(certificate, cuts=cuts)))
-    outcome = carproof(COMMANDS[-1])
-    assert (outcome.code, outcome.stderr) == (1, "")
-    assert outcome.stdout.startswith("not proved: $: the proof of cut 0 does not hold: the refutation does not derive")
 
 
 @pytest.mark.parametrize("change", [{"ticks": (2,)}, {"ticks": (2, 2, 2)}, {"seen": ((1, ("middle",)),)}])

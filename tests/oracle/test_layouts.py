@@ -116,16 +116,6 @@ def test_degrees_become_lengths_on_the_ground() -> None:
     assert places["c"] == pytest.approx((558_000, 1_114_120), abs=100)
 
 
-def test_a_lift_of_lif_joins_nodes_at_one_place_of_two_maps() -> None:
-    document = json.loads(lif("0.11.0"))
-    lower, upper = document["layouts"][0]["nodes"][:2]
-    lower["mapId"], upper["mapId"] = "ground", "first"
-    upper["nodePosition"] = lower["nodePosition"]
-    with_lift = import_layout(json.dumps(document, indent=1).encode(), settings=Settings(robots=0))
-    assert with_lift.instance.graph.resource["ab"].duration == 1
-    assert any("between maps" in each.feature for each in with_lift.notes)
-
-
 def test_nodes_of_lif_at_one_place_hold_one_robot_and_an_edge_between_them_is_a_turn() -> None:
     """As the rotation station of LIF.md, section 10.9, and stations of several nodes."""
     document = json.loads(lif("1.0.0"))
@@ -319,22 +309,3 @@ def test_whole_numbers_and_texts_are_names_and_all_attributes_of_graphml_are_tex
         assert {"-7", "0", "true"} <= graph.resource.keys()
     graph = imported(GRAPHML.replace('"a"', '"true"').replace('"b"', '"1.5"'), robots=0).graph
     assert {"true", "1.5"} <= graph.resource.keys()
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ("--tick 0s", "--tick: it must be a number above 0"),
-        ("--tick 1", "--tick: it must be a number above 0"),
-        ("--speed 3kn", "--speed: it must be a number above 0"),
-        ("--footprint 0x3mm", "--footprint: it must be a length and a width"),
-        ("--from nav2", "plant.xml:2: it must have features"),
-        ("--json", "--json lists what is not expressed"),
-        ("--agents 3", "--agents concerns a scenario"),
-    ],
-)
-def test_wrong_options_are_refused(arguments: str, message: str, carproof: Run, elsewhere: Path) -> None:
-    (elsewhere / "plant.xml").write_text(OPENTCS)
-    outcome = carproof(f"convert plant.xml {arguments}")
-    assert outcome.code == 2
-    assert message in outcome.stderr

@@ -74,12 +74,6 @@ def test_a_proof_that_does_not_hold_is_refused_with_its_reason(carproof: Run, fo
     assert (document["proved"], document["reason"]) == (False, reason)
 
 
-def test_the_gap_as_a_document(carproof: Run) -> None:
-    document = document_of(carproof, "gap town.json")
-    assert [document[name] for name in ("optimum", "lower", "decided", "best_order")] == [5, 5, True, 5]
-    assert document["planners"][0] == {"planner": "carp", "unplanned": 0, "total": 5}
-
-
 def test_a_gap_without_optimum_says_why(carproof: Run) -> None:
     outcome = carproof("gap lane.json")
     assert outcome.code == 1

@@ -5,9 +5,7 @@ from pathlib import Path
 
 import pytest
 from tests.oracle.running import (
-    BEHIND_PLAN,
     EAST,
-    EAST_PLAN,
     HEAD_ON,
     TWO,
     TWO_PLANNED,
@@ -97,15 +95,6 @@ def test_add_plans_the_robot_and_tells_what_changed(carproof: Run) -> None:
     ]
     assert json.loads(Path("more.json").read_text()) == TWO_PLANNED
     assert json.loads(carproof("add town.json one.json r2 --m 1 --json").stdout) == TWO_PLANNED
-
-
-def test_a_plan_that_is_in_the_way_of_others_can_be_replaced(carproof: Run) -> None:
-    assert json.loads(carproof("query town.json broken.json r2 --json").stdout) == {"plan": BEHIND_PLAN}
-
-
-def test_a_robot_whose_id_is_a_number_is_found_by_it(carproof: Run) -> None:
-    save(numbered=corridor([{**EAST, "id": 7}, {**EAST, "id": "8", "start": "b"}]))
-    assert json.loads(carproof("query numbered.json none.json 7 --json").stdout) == {"plan": EAST_PLAN}
 
 
 @pytest.fixture(name="pocket")

@@ -54,12 +54,6 @@ def test_importing_the_face_loads_none_of_the_packages() -> None:
     assert loaded.split() == ["carproof"]
 
 
-def test_a_public_name_is_defined_under_this_name() -> None:
-    values = {name: getattr(carproof, name) for name in carproof.__all__}
-    defined = {name: value.__name__ for name, value in values.items() if isroutine(value) or isinstance(value, type)}
-    assert {name: other for name, other in defined.items() if name != other} == {}
-
-
 def test_the_documentation_imports_public_names_alone() -> None:
     private = []
     for page in [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]:

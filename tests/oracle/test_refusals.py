@@ -150,6 +150,28 @@ FORMATS = (
     ("convert m.map m.scen --agents 3", "m.scen:3: 3 agents are asked for, and the scenario has 2"),
     ("convert - m.scen", "Error: standard input:1: "),
 )
+CONFORM = (
+    ("conform --one-shot -- cat {map}", "must hold {instance}, or {map} and {scen}"),
+    ("conform --from lacam -- cat", "--from concerns the files that programs write with --one-shot"),
+    ("conform --one-shot --level exact -- cat {map} {scen}", "--level must be one of sound, complete, optimal"),
+    ("conform --one-shot --level exact -- cat {instance}", "--level must be one of sound, complete-in"),
+    ("conform --executor --level complete -- cat", "Of an executor --level must be one of sound, exact."),
+    ("conform --executor --one-shot -- cat", "--executor can be combined with neither --one-shot nor --kernel."),
+    ("conform --executor --kernel -- cat", "--executor can be combined with neither --one-shot nor --kernel."),
+)
+SIZES = (
+    ("convert plant.xml --tick 0s", "--tick: it must be a number above 0"),
+    ("convert plant.xml --speed 3kn", "--speed: it must be a number above 0"),
+    ("convert plant.xml --footprint 0x3mm", "--footprint: it must be a length and a width"),
+    ("convert plant.xml --from nav2", "plant.xml:2: it must have features"),
+    ("convert plant.xml --json", "--json lists what is not expressed"),
+    ("convert plant.xml --agents 3", "--agents concerns a scenario"),
+    ("convert plant.xml --at 3", "--at"),
+    ("check town.json plans.json --cells 1m", "--cells"),
+    ("check town.json plans.json --footprint 450mm --cells 0.5mm", "--cells"),
+    ("release town.json plans.json trace-early.json --seconds 0", "--seconds"),
+    ("audit town.json plans.json --seconds nan", "--seconds"),
+)
 EXPERIMENTS = (
     ("experiment quality --robots 500 --store st", "500 robots need as many distinct starts, and the map has 400"),
     ("experiment quality --backend dask --store st", "needs the address of its --scheduler"),
@@ -194,7 +216,7 @@ def many_documents(folder: Path) -> Path:
     [
         pytest.param(command, messages, id=f"{command}-{number}")
         for number, (command, *messages) in enumerate(
-            (*USAGE, *FILES, *OTHERS, *PLANNING, *EXECUTING, *PROOFS, *MAKING, *FORMATS, *EXPERIMENTS)
+            (*USAGE, *FILES, *OTHERS, *PLANNING, *EXECUTING, *PROOFS, *MAKING, *FORMATS, *CONFORM, *SIZES, *EXPERIMENTS)
         )
     ],
 )

@@ -129,14 +129,6 @@ def test_own_positions_are_kept_and_others_are_laid_out_apart() -> None:
         )
 
 
-def test_all_goals_and_starts_of_one_resource_are_drawn_apart(carproof: Run, tmp_path: Path) -> None:
-    instance = corridor([{**EAST, "id": f"r{number}"} for number in range(5)])
-    picture = picture_of(drawn(carproof, tmp_path, instance, solution({}, [f"r{n}" for n in range(5)]), "--at", "0"))
-    goals = {each.get("d") for each in picture.findall(f".//{SVG}path[@class='goal']")}
-    starts = {(each.get("cx"), each.get("cy")) for each in picture.findall(f".//{SVG}circle[@class='start']")}
-    assert (len(goals), len(starts)) == (5, 5)
-
-
 def test_both_resources_of_an_exchange_are_marked(carproof: Run, tmp_path: Path) -> None:
     west = {"id": "r2", "start": "b", "goal": "a"}
     plans = solution({"r1": [["a", 0, 1], ["b", 1, 2]], "r2": [["b", 0, 1], ["a", 1, 2]]})
