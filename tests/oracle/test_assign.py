@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.oracle.running import Run, save, solution, town
+from tests.oracle.running import Run, asked, save, solution, town
 
 import carproof
 from carp_spec import Refusal, Stop, check_update, judge
@@ -109,3 +109,13 @@ def test_plans_that_break_a_rule_get_no_further_stops() -> None:
     with pytest.raises(Refusal) as refused:
         carproof.assign(instance, replace(plans, plans=(jumps, plans.plans[1])), "r2", [Stop("d")], 4)
     assert refused.value.rule == "plan/move"
+
+
+def test_a_robot_that_has_left_is_refused() -> None:
+    left = solution({"r2": [["d", 0, 1], ["c", 1, 2], ["b", 2, 3], ["p", 3, 4]]}, ["r1"])
+    hall = {**HALL, "after_goal": "vanish"}
+    error = asked("assign", instance=hall, solution=left, robot="r2", now=4, stops=[{"resource": "d"}])["error"]
+    assert (error["rule"], error["message"]) == (
+        "request/robot",
+        "the robot must be under way or parked at 4, and 'r2' has left",
+    )

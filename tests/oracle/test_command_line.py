@@ -94,16 +94,10 @@ def test_a_closed_pipe_ends_a_command_quietly(arguments: str) -> None:
     [
         "rules",
         "--help",
-        "--version",
-        "plan --help",
         "plan town.json",
-        "plan town.json --json",
         "plan town.json -o -",
         "plan town.json -o new.json",
         "check town.json plans.json",
-        "check town.json broken.json --json",
-        "view town.json plans.json -o -",
-        "theorems",
     ],
 )
 def test_output_that_is_lost_is_no_answer(arguments: str) -> None:
@@ -120,8 +114,6 @@ def test_output_that_is_lost_is_no_answer(arguments: str) -> None:
     [
         ("check town.json plans.json", 0),
         ("check town.json broken.json", 1),
-        ("check town.json none.json", 2),
-        ("plan town.json -o -", 0),
         ("rules >&-", 2),
         ("rules >/dev/full", 2),
     ],

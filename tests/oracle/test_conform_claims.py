@@ -1,13 +1,10 @@
 """A planner is asked only what it claims to plan, and the verdict lists what was left out."""
 
-import json
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from msgspec import structs
-from tests.oracle.running import Run
 from tests.oracle.test_conform_judges import Tampered, as_it_is
 
 import carp_reference
@@ -69,16 +66,6 @@ def test_only_a_claimed_feature_is_in_a_random_case() -> None:
     assert conform(subject, of(Claims(frozenset({*FEATURES} - {"park"})))).conforms
     assert sum(case.stage == "random" for case in asked) == 24
     assert not [case for case in asked for name in {*FEATURES} - {"park"} if FEATURES[name](case)]
-
-
-def test_the_verdict_lists_what_was_left_out(carproof: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    options = ["--examples", "0", "--without", "directed", "--without", "capacities", "--solvable", "--one-shot"]
-    program = ["--", "false", "{instance}"]
-    lines = carproof("conform", *options, *program).stdout.splitlines()
-    assert "not asked, as it does not claim it: capacities, directed, robots without a plan" in lines
-    report = json.loads(carproof("conform", "--json", *options, *program).stdout)
-    assert report["left_out"] == ["capacities", "directed", "robots without a plan"]
 
 
 PLAIN = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("new", "a", "b"),))

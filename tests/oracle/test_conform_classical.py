@@ -140,6 +140,12 @@ def test_a_program_that_never_writes_a_plan_does_not_conform(process: Run) -> No
     assert "[program/tries]" in report["shortfalls"][0]
 
 
+@pytest.mark.usefixtures("elsewhere")
+def test_a_program_that_ends_with_an_error_and_writes_nothing_has_crashed(process: Run) -> None:
+    report = report_of(process, "--examples", "0", "--", "false", "{map}", "{scen}")
+    assert {failure["category"] for failure in report["failures"]} == {"crash"}
+
+
 def best(instance: Instance) -> Solution:
     found = optimum(instance, 3)
     return found.solution or Solution((), (), tuple(instance.robot))

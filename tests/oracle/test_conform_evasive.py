@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -120,15 +120,6 @@ class Never(int):
         return 0
 
 
-@dataclass
-class Duck:
-    """Values with the fields of a visit."""
-
-    resource: Any
-    enter: Any
-    leave: Any
-
-
 def with_visits(solution: Solution, change: Callable[[Visit], Any]) -> Solution:
     plans = [Plan(plan.robot, [change(visit) for visit in plan.visits]) for plan in solution.plans]  # type: ignore[arg-type]
     return replace(solution, plans=plans)  # type: ignore[arg-type]
@@ -179,21 +170,3 @@ def test_a_function_cannot_reach_the_judges(planner: Callable[[Instance], Soluti
     assert report.conforms is False
     assert {finding.rule for finding in report.findings} & rules
     assert {finding.rule for finding in report.findings} <= rules | {"plan/goal", "plan/duration", "plan/contiguous"}
-
-
-def test_a_function_that_returns_lists_and_what_looks_like_visits_is_told_so() -> None:
-    def mine(instance: Instance) -> Solution:
-        return with_visits(right(instance), lambda visit: Duck(visit.resource, visit.enter, visit.leave))
-
-    report = conform(Function(mine, "mine"), Options(examples=20, whole=True))
-    assert {(finding.category, finding.rule) for finding in report.findings} == {("protocol error", "program/result")}
-
-
-def test_a_function_that_gives_up_or_plans_one_robot_shows_nothing() -> None:
-    def first(instance: Instance) -> Solution:
-        solution = right(instance)
-        named = solution.order[:1]
-        return Solution(solution.plans[:1], named, tuple(robot for robot in instance.robot if robot not in named))
-
-    report = conform(Function(first, "first"), Options(examples=60, whole=True))
-    assert (report.conforms, report.findings) == (False, [])

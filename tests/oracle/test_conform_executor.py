@@ -15,6 +15,7 @@ from tests.profiles import draws
 
 from carp_reference.execution import order_of
 from carproof import Delay, Report, Robot, RobotId, Trace
+from carproof.conform.answers import Skipped
 from carproof.conform.asking.random_cases import execution_cases
 from carproof.conform.asking.smoke import committed, row
 from carproof.conform.cases import EXECUTION, Case
@@ -155,6 +156,16 @@ def test_robots_in_another_order_are_reported_once_and_at_level_exact_alone() ->
     trace = decided(MEETING, (0, ("second",)), (1, ("second",)), (2, ("first",)), (3, ("first",)))
     assert rules(MEETING, trace, Level.SOUND) == []
     assert rules(MEETING, trace, Level.EXACT) == ["execution/order"]
+
+
+def test_a_program_that_does_not_drive_is_skipped() -> None:
+    skipped = Skipped("no drive here")
+    assert execution(ALONE, lambda *_: skipped) is skipped
+
+
+def test_patience_starts_again_whenever_a_robot_enters() -> None:
+    trace = decided(ALONE, (1, ("first",)), (2, ("first",)))
+    assert [visit.enter for visit in trace.plans[0].visits] == [1, 2]
 
 
 @pytest.mark.parametrize("named", [("first", "first"), ("second",)])

@@ -130,6 +130,12 @@ def test_a_run_gives_up_after_a_few_lost_processes() -> None:
     assert [outcome.finding is not None for outcome in report.outcomes] == [True] * 3
 
 
+def test_who_skips_everything_does_not_conform() -> None:
+    report = run("skips everything", seconds=GENEROUS)
+    assert (report.conforms, report.findings, report.judged.total()) == (False, [], 0)
+    assert all(outcome.skipped == "no time" for outcome in report.outcomes)
+
+
 def test_the_end_of_standard_error_is_kept_and_bounded() -> None:
     assert run("exit", seconds=GENEROUS).findings[0].stderr == "out of robots\n"
     assert 0 < len(run("endless standard error").findings[0].stderr) <= 2**14

@@ -12,7 +12,6 @@ from msgspec import structs
 import carp_reference
 from carp_spec import Plan, Solution
 from carp_spec.documents.vectors import VectorsDocument
-from carp_spec.documents.verdicts import VerdictDocument
 from carproof.conform.answers import Reply
 from carproof.conform.cases import ASKED_OPS, Case, request_fields, request_of
 from carproof.conform.levels import Level
@@ -81,11 +80,6 @@ def late_plan(case: Case, reply: Reply) -> Reply:
     assert case.robot is not None
     plan = reply.plan_of(case.robot) if isinstance(reply, QueryDocument) else None
     return reply if plan is None else query_document(later(plan))
-
-
-def verdict_is_always_valid(case: Case, reply: Reply) -> Reply:
-    del case
-    return msgspec.structs.replace(reply, valid=True, violations=()) if isinstance(reply, VerdictDocument) else reply
 
 
 def polishes_into_each_other(case: Case, reply: Reply) -> Reply:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any, TypeAlias
 
 import msgspec
@@ -246,6 +247,17 @@ ROWS = (*QUERIES, *PLANS, *ADDITIONS, *POLISHES, *CHECKS, *OPTIMA, *BOUNDS)
 @pytest.fixture(autouse=True)
 def patient(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(optima, "OPTIMUM_SECONDS", PATIENT)
+
+
+def test_carproof_and_a_plan_that_contradict_each_other_are_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    for best, message in (
+        (None, "has no plan, and"),
+        (later(plan("new", *FIRST_GOES)), "arrives at 4 at best: not so"),
+    ):
+        engine = SimpleNamespace(query=lambda *_, best=best: best)
+        monkeypatch.setattr("carproof.conform.judging.judges.engine_for", lambda _, engine=engine: engine)
+        with pytest.raises(RuntimeError, match=message):
+            first_finding(QUERY, goes(*FIRST_GOES), Level.COMPLETE)
 
 
 @pytest.mark.parametrize(("asked", "answer", "rules"), ROWS)

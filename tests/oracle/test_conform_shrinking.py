@@ -6,6 +6,7 @@ import pytest
 from hypothesis import strategies as st
 
 from carp_spec import Robot
+from carproof.conform import shrinking
 from carproof.conform.asking.smoke import row
 from carproof.conform.cases import Case
 from carproof.conform.findings import Category, Finding, wrong
@@ -78,6 +79,13 @@ def test_without_time_to_shrink_the_first_failure_stays() -> None:
     made = search(asked, shrink_seconds=0.0)
     assert best(made) == (asked.robots[-1], JUMPS)
     assert max(asked.robots[:-1]) < 3 < asked.robots[-1]
+
+
+def test_smaller_failures_are_looked_for_until_the_time_is_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = Asked(lambda robots: JUMPS if robots >= 9 else None)
+    monkeypatch.setattr(shrinking, "monotonic", lambda: 100.0 + 10 * len(asked.robots))
+    search(asked, shrink_seconds=25.0)
+    assert asked.limits.count(None) == len(asked.limits) - 3
 
 
 def test_a_failure_that_does_not_come_again_stays_as_it_is() -> None:

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations, product
 
 from tests.profiles import draws
-from tests.spec.making import RING, TURNING, solution_of
 
 from carp_reference import plan
 from carp_reference.execution import order_of
@@ -96,9 +95,3 @@ def test_no_smaller_set_of_delays_makes_robots_on_the_clock_collide() -> None:
             assert smallest is not None
             worth = [(sum(each.ticks for each in delays), len(delays)) for delays in (smallest, first)]
             assert worth[0] == worth[1]
-
-
-def test_robots_in_a_circle_never_move_and_robots_behind_them_neither() -> None:
-    instance, solution = Instance(RING, TURNING[0]), solution_of(TURNING[1])
-    order = order_of(instance, solution)
-    assert in_order(order, ()).keys() == {("r1", 0), ("r2", 0), ("r3", 0)}

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from tests.oracle.running import Document, Run, line, save, solution, town
+from tests.oracle.viewing import SVG, picture_of
 from tests.profiles import draws
 
 from carp_spec import Solution, check_update, judge, violations_of
@@ -67,6 +68,19 @@ def test_robots_of_a_rotation_stand_where_dependencies_name_it(carproof: Run) ->
         plans = json.loads(Path("end.json").read_bytes())["plans"]
         assert [plan["visits"] for plan in plans] == [[[way[0], 0, None]] for way in RING]
         assert carproof("execution check ring.json turning.json end.json").code == 0
+
+
+def test_a_picture_shows_a_rotation_as_a_circle_of_arrows(carproof: Run, elsewhere: Path) -> None:
+    for name, waits, cycle in (("ring.json turning.json", 0, 4), ("train.json plans.json", 1, 0)):
+        carproof(f"execution dependencies {name} --svg graph.svg")
+        picture = picture_of((elsewhere / "graph.svg").read_text())
+        arrows = {
+            kind: "".join(
+                each.get("d", "") for each in picture.findall(f".//{SVG}g[@class='{kind}']/{SVG}path[@class='arrow']")
+            ).count("M")
+            for kind in ("waits", "cycle")
+        }
+        assert arrows == {"waits": waits, "cycle": cycle}
 
 
 @pytest.fixture

@@ -30,8 +30,6 @@ from carproof import (
     check,
     check_update,
 )
-from carproof.generate import Fleet as Drawn
-from carproof.generate import Grid, grid_instance
 from carproof.testing.random_instances import Draw, draw_instance
 
 QUESTIONS = 240
@@ -292,21 +290,6 @@ def whole_of(before: Plan, after: Plan) -> Plan:
     first = after.visits[0]
     count = next(place for place, visit in enumerate(before.visits) if visit.enter == first.enter)
     return replace(after, visits=(*before.visits[:count], *after.visits))
-
-
-def test_robots_added_after_a_polish_have_the_plans_of_the_same_documents() -> None:
-    changed = 0
-    for number in range(12):
-        instance = grid_instance(Grid(8, 8), Drawn(robots=26, seed=number))
-        fleet = Fleet(replace(instance, robots=()), planner=Neighbourhood(m=3))
-        fleet.add(*instance.robots[:-3])
-        changed += len(fleet.polish(iterations=3, seed=number).plans)
-        for robot in instance.robots[-3:]:
-            further = replace(fleet.instance, robots=(*fleet.instance.robots, robot))
-            whole = carp_optimized.add(further, fleet.solution, robot.id, 0, Neighbourhood(m=3))
-            fleet.add(robot)
-            assert {*fleet.solution.plans} == {*whole.plans}, number
-    assert changed > 12
 
 
 def test_a_polish_keeps_what_was_done() -> None:

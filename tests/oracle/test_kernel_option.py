@@ -162,6 +162,27 @@ def test_a_kernel_that_differs_is_a_contradiction(carproof: Run, monkeypatch: py
     assert "Internal contradiction: " in outcome.stderr
 
 
+def test_a_proof_is_verified_without_a_kernel_that_cannot_decide(
+    carproof: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stand_in(monkeypatch, verdict="undecided", message="too large")
+    decided = carproof("verify proof")
+    assert (decided.code, decided.stderr, "decided by" in decided.stdout) == (0, "", False)
+    monkeypatch.setenv(VARIABLE, "nowhere")
+    assert carproof("verify proof") == decided
+
+
+@pytest.mark.parametrize(
+    "answer", [{"bound": 6, "cost": 5}, {"bound": 5, "cost": 4}, {"bound": 5, "cost": 5, "unplanned": 1}]
+)
+def test_a_kernel_that_proves_something_else_is_a_contradiction(
+    carproof: Run, monkeypatch: pytest.MonkeyPatch, answer: dict[str, int]
+) -> None:
+    stand_in(monkeypatch, verdict="accepted", **{"unplanned": 0, **answer})
+    outcome = carproof("verify proof")
+    assert (outcome.code, "Internal contradiction: " in outcome.stderr) == (70, True)
+
+
 def test_the_kernel_proves_an_optimum_and_no_obstacle_but_clauses(
     carproof: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -175,22 +196,6 @@ def test_the_kernel_proves_an_optimum_and_no_obstacle_but_clauses(
     assert carproof("verify-proof lane").code == 0
     outcome = carproof("verify-proof lane --kernel")
     assert (outcome.code, "the obstacle must be clauses" in outcome.stderr) == (2, True)
-
-
-def test_certificates_of_queries_are_written_and_verified(carproof: Run) -> None:
-    verified = carproof(COMMANDS[3].removesuffix(" --kernel"))
-    assert (verified.code, verified.stderr) == (0, "")
-    assert verified.stdout.splitlines()[-1].split() == ["r1", "0", "2", "0", "carp_verify"]
-    certificate = json.loads(Path("query.json").read_text())
-    save(wrong={**certificate, "bound": 3})
-    outcome = carproof("verify town.json plans.json wrong.json")
-    assert outcome.code == 1
-    assert outcome.stdout.startswith("not proved: $.labels: ")
-    assert outcome.stdout.endswith("[query-certificate/closed]\n")
-    document = json.loads(carproof("verify town.json plans.json wrong.json --json").stdout)
-    assert (document["proved"], document["bound"], document["rule"]) == (False, None, "query-certificate/closed")
-    save(wrong={**certificate, "now": True})
-    assert carproof("verify town.json plans.json wrong.json").code == 2
 
 
 def test_a_certificate_is_written_too_where_there_is_no_plan(carproof: Run) -> None:

@@ -116,6 +116,16 @@ def test_degrees_become_lengths_on_the_ground() -> None:
     assert places["c"] == pytest.approx((558_000, 1_114_120), abs=100)
 
 
+def test_a_lift_of_lif_joins_nodes_at_one_place_of_two_maps() -> None:
+    document = json.loads(lif("0.11.0"))
+    lower, upper = document["layouts"][0]["nodes"][:2]
+    lower["mapId"], upper["mapId"] = "ground", "first"
+    upper["nodePosition"] = lower["nodePosition"]
+    with_lift = import_layout(json.dumps(document, indent=1).encode(), settings=Settings(robots=0))
+    assert with_lift.instance.graph.resource["ab"].duration == 1
+    assert any("between maps" in each.feature for each in with_lift.notes)
+
+
 def test_nodes_of_lif_at_one_place_hold_one_robot_and_an_edge_between_them_is_a_turn() -> None:
     """As the rotation station of LIF.md, section 10.9, and stations of several nodes."""
     document = json.loads(lif("1.0.0"))
@@ -156,16 +166,6 @@ UNKNOWN = {
             'target="b"/>', 'target="b">\n<data key="d3">2</data></edge>'
         ),
         {"the field slope": [10]},
-    ),
-    "graphml with an attribute id": (
-        GRAPHML.replace("<graph e", '<key id="d3" attr.name="id"/>\n<graph e').replace(
-            '<node id="b">', '<node id="b">\n<data key="d3">c</data>'
-        ),
-        {"the field data id": [8]},
-    ),
-    "annotated": (
-        ANNOTATED,
-        {"vertices without an edge to themselves, where robots may not wait; here they may": [4]},
     ),
     "building": (
         BUILDING.replace("spawn_robot_name:", "dock_name: [1, ''], lit: [4, true],\n spawn_robot_name:").replace(

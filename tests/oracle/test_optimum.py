@@ -78,3 +78,9 @@ def test_a_gap_without_optimum_says_why(carproof: Run) -> None:
     outcome = carproof("gap lane.json")
     assert outcome.code == 1
     assert outcome.stdout.splitlines()[-1].startswith("the robots cannot all be planned: ")
+
+
+def test_the_gap_as_a_document(carproof: Run) -> None:
+    document = document_of(carproof, "gap town.json")
+    assert [document[name] for name in ("optimum", "lower", "decided", "best_order")] == [5, 5, True, 5]
+    assert document["planners"][0] == {"planner": "carp", "unplanned": 0, "total": 5}

@@ -1,7 +1,6 @@
 """Orders of VDA 5050: well-formed, the whole plan in order, and a base that no robot can leave unsafely."""
 
 import json
-import os
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
@@ -11,7 +10,6 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from jsonschema import validators
 from msgspec import structs
 from tests.oracle.layout_files import OPENTCS
 from tests.oracle.running import Run
@@ -35,8 +33,6 @@ NEEDED: Mapping[str, type | tuple[type, ...]] = {
     "edges": list,
 }
 ELEMENT: Mapping[str, type] = {"sequenceId": int, "released": bool, "actions": list}
-SCHEMAS = [*filter(None, os.environ.get("CARPROOF_VDA5050_SCHEMAS", "").split(":"))]
-"""The published schemas, if someone has them."""
 Order = Mapping[str, Any]
 
 
@@ -237,15 +233,3 @@ def test_what_orders_cannot_express_is_refused(
     with pytest.raises(Refusal) as refused:
         write_orders(instance, solution, OrderSettings(**options))
     assert refused.value.rule == rule
-
-
-@pytest.mark.nightly
-@pytest.mark.parametrize("schema", SCHEMAS)
-@given(PLANNED, st.integers(0, 12))
-def test_orders_are_valid_by_the_published_schema(schema: str, planned: PlannedInstance, at: int) -> None:
-    text = Path(schema).read_text()
-    document = json.loads(text)
-    validator = validators.validator_for(document)(document)
-    version = "2.1.0" if "startNodeId" in text else "3.0.0"
-    for order in orders(*named(planned.instance, planned.solution), at=at, version=version).values():
-        validator.validate(order)

@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 from tests.oracle.running import (
+    BEHIND_PLAN,
     EAST,
+    EAST_PLAN,
     HEAD_ON,
     TWO,
     TWO_PLANNED,
@@ -97,6 +99,15 @@ def test_add_plans_the_robot_and_tells_what_changed(carproof: Run) -> None:
     assert json.loads(carproof("add town.json one.json r2 --m 1 --json").stdout) == TWO_PLANNED
 
 
+def test_a_plan_that_is_in_the_way_of_others_can_be_replaced(carproof: Run) -> None:
+    assert json.loads(carproof("query town.json broken.json r2 --json").stdout) == {"plan": BEHIND_PLAN}
+
+
+def test_a_robot_whose_id_is_a_number_is_found_by_it(carproof: Run) -> None:
+    save(numbered=corridor([{**EAST, "id": 7}, {**EAST, "id": "8", "start": "b"}]))
+    assert json.loads(carproof("query numbered.json none.json 7 --json").stdout) == {"plan": EAST_PLAN}
+
+
 @pytest.fixture(name="pocket")
 def swapping_at_a_pocket() -> Document:
     """Two robots that park at each other's start, and no planning order leaves room for both."""
@@ -107,26 +118,18 @@ def swapping_at_a_pocket() -> Document:
 
 
 @pytest.mark.usefixtures("pocket")
-@pytest.mark.parametrize(
-    ("options", "name"),
-    [
-        ("", "neighbourhood, repaired"),
-        ("--m 2", "neighbourhood, repaired"),
-        ("--planner carp --repair", "carp, repaired"),
-    ],
-)
-def test_plan_leaves_nobody_out_as_it_is_first_called(carproof: Run, options: str, name: str) -> None:
-    outcome = carproof(f"plan pocket.json {options}")
-    assert (outcome.code, outcome.stderr) == (0, "")
-    assert outcome.stdout.splitlines()[2].split("  ")[0] == name
-
-
-@pytest.mark.usefixtures("pocket")
 @pytest.mark.parametrize("options", ["--planner carp", "--no-baseline", "--no-repair"])
 def test_the_pure_result_of_a_planner_is_not_repaired(carproof: Run, options: str) -> None:
     outcome = carproof(f"plan pocket.json {options}")
     assert outcome.code == 1
     assert "repaired" not in outcome.stdout
+
+
+def test_polish_leaves_numbers_too_large_for_groups_as_they_are(carproof: Run, pocket: Document) -> None:
+    pocket["graph"]["nodes"][3]["duration"] = 2**40
+    save(slow=pocket)
+    carproof("plan slow.json --planner carp --engine reference -o plans.json")
+    assert carproof("polish slow.json plans.json --iterations 3 --engine reference").code == 1
 
 
 def test_python_and_the_op_repair_as_the_command_does_but_an_op_gives_the_plans_of_a_planner_that_it_names(

@@ -64,3 +64,8 @@ def test_for_a_time_the_command_python_and_the_op_improve_plans(carproof: Run) -
     response, _ = respond(msgspec.json.encode(op), Session(engine_named(None)))
     found = read_solution(json.dumps(json.loads(msgspec.json.encode(response))["result"]).encode())
     assert total_cost(INSTANCE, found.plans) == BEST
+
+
+def test_an_engine_keeps_to_rounds_that_never_raise_the_total(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("carp_optimized.improve.annealing.polish_or_anneal", None)
+    assert carproof("polish town.json late.json --seconds 0.1 --engine optimized").code == 0

@@ -1,6 +1,7 @@
 """`import carproof`: what an author of a planner finds there."""
 
 import ast
+import json
 import re
 import subprocess
 import sys
@@ -83,6 +84,19 @@ def test_every_document_is_written_and_read() -> None:
     ]
     for value, write, read in documents:
         assert read(write(value)) == value
+
+
+def test_a_solution_has_the_plan_of_each_robot_and_a_makespan() -> None:
+    assert (PLANNED.plan_of("s"), PLANNED.plan_of("t")) == (PLANNED.plans[1], None)
+    assert carproof.total_cost(INSTANCE, PLANNED.plans) == 3
+    assert carproof.makespan(INSTANCE, PLANNED.plans) == 3
+    assert carproof.makespan(INSTANCE, ()) == 0
+
+
+def test_a_verdict_that_contradicts_itself_is_refused() -> None:
+    document = json.loads(carproof.write_verdict(carproof.check(INSTANCE, PLANNED)))
+    with pytest.raises(Refusal, match="it must be true if there are no violations"):
+        carproof.read_verdict(json.dumps({**document, "valid": False}).encode())
 
 
 @pytest.mark.parametrize("kind", [bool, np.uint8, np.int64])

@@ -64,11 +64,6 @@ def test_start_tells_name_version_and_ops() -> None:
     assert result(op="start", version=1) == {"name": "carproof", "version": version("carproof"), "ops": list(OPS)}
 
 
-def test_plan_takes_a_planner_and_its_options() -> None:
-    assert result(op="plan", instance=TWO, planner="carp") == TWO_PLANNED
-    assert result(op="plan", instance=TWO) == result(op="plan", instance=TWO, planner="neighbourhood", m=4, sample=None)
-
-
 @pytest.mark.parametrize("id", [None, 0, "x", [1, {"a": [None]}], 1.5, 10**30])
 def test_the_id_comes_back_as_it_was(id: object) -> None:
     (response,) = ask(line(id=id, op="stop"))

@@ -8,7 +8,7 @@ from subprocess import run
 
 import pytest
 from PIL import Image
-from tests.oracle.running import EAST, EAST_PLAN, TWO_PLANNED, Document, Run, corridor, solution
+from tests.oracle.running import EAST, EAST_PLAN, TWO_PLANNED, Document, Run, corridor, save, solution, town
 from tests.oracle.viewing import (
     COLLIDING,
     CORRIDOR,
@@ -37,6 +37,12 @@ def test_the_page_is_one_file_that_names_no_address_outside(carproof: Run, tmp_p
     assert not OUTSIDE.search(page)
     assert "default-src 'none'" in page
     assert not re.search(r"<(?:link|script|img)[^>]*(?:src|href)=\"(?!data:)", page)
+
+
+def test_equal_input_gives_equal_bytes(process: Run, elsewhere: Path) -> None:
+    save(town=town("ab bc cd de", CORRIDOR["robots"]), plans=COLLIDING)  # without positions
+    assert process("view town.json plans.json -o one").code == process("view town.json plans.json -o two").code == 0
+    assert (elsewhere / "one").read_bytes() == (elsewhere / "two").read_bytes()
 
 
 def test_the_scene_has_every_visit_in_its_place_and_every_free_window(carproof: Run, tmp_path: Path) -> None:
@@ -84,6 +90,17 @@ def test_the_still_of_the_chart_has_rows_windows_stays_and_violations(carproof: 
     assert count == {"row-name": 5, "window": 5, "bar": 7, "violation": 2}
 
 
+def test_one_way_moves_are_arrows(carproof: Run, tmp_path: Path) -> None:
+    instance = corridor([EAST])
+    instance["graph"]["directed"] = True
+    instance["graph"]["edges"].append({"source": "b", "target": "a"})
+    picture = picture_of(drawn(carproof, tmp_path, instance, solution({"r1": EAST_PLAN}), "--at", "0"))
+    paths = {each.get("class"): each.get("d", "") for each in picture.iter(f"{SVG}path")}
+    assert "edge" not in paths
+    assert paths["joint"].count("M") == 4
+    assert paths["one-way"].count("M") == paths["one-way head"].count("z") == 3
+
+
 def test_a_plant_has_its_lanes_groups_stops_and_headings() -> None:
     instance, plans = plant()
     scene = scene_of(view(instance, plans, title="plant").decode())
@@ -127,6 +144,12 @@ def test_own_positions_are_kept_and_others_are_laid_out_apart() -> None:
             for at, one in enumerate(points)
             for two in points[:at]
         )
+
+
+def test_large_graphs_without_positions_are_laid_out_in_rows() -> None:
+    many = tuple(Resource(number) for number in range(900))
+    placed = placement(ResourceGraph(many, tuple((number, number + 1) for number in range(899))))
+    assert (placed.width, placed.height) == (29 * UNIT + 52, 29 * UNIT + 52)
 
 
 def test_both_resources_of_an_exchange_are_marked(carproof: Run, tmp_path: Path) -> None:

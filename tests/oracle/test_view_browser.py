@@ -142,6 +142,17 @@ def test_it_plays_and_pauses_by_key_and_robots_move_between_resources(
     assert (slider(shown), shown.robots()) == stopped
 
 
+def test_it_stops_at_the_end_and_begins_anew(driver: Chrome, tmp_path: Path, town: tuple[Instance, Solution]) -> None:
+    shown = opened(driver, tmp_path, *town)
+    shown.press("+", "+", "+", "+", "+", "+", Keys.SPACE)
+    wait_for(shown, "return document.getElementById('play').textContent === 'Play'")
+    last = slider(shown)
+    assert shown.tick == f"tick {last} of {last}"
+    shown.press("-", "-", "-", "-", "-", "-", Keys.SPACE)
+    assert shown.text("play") == "Pause"
+    assert slider(shown) < last
+
+
 def test_keys_step_jump_and_change_the_speed(collision: Page) -> None:
     seen = []
     for keys in ([Keys.ARROW_RIGHT], [Keys.ARROW_RIGHT, Keys.ARROW_LEFT], [Keys.END], [Keys.ARROW_RIGHT], [Keys.HOME]):
@@ -165,16 +176,17 @@ def test_a_planted_collision_is_counted_listed_and_marked_at_its_tick(collision:
     assert collision.robots()
 
 
-def test_an_instance_alone_is_a_map_without_a_clock(
-    driver: Chrome, tmp_path: Path, town: tuple[Instance, Solution]
-) -> None:
-    file = tmp_path / "page.html"
-    file.write_bytes(view(town[0], title="town.json"))
-    shown = Page(driver, file)
-    assert shown.text("verdict") == "an instance without plans"
-    assert shown.script("return document.querySelector('footer').clientHeight") == 0
-    assert shown.count("#robots button") == 100
-    assert logged(driver, "browser") == []
+def test_both_resources_of_an_exchange_are_red_while_robots_pass_each_other(driver: Chrome, tmp_path: Path) -> None:
+    resources, edges = (Resource("a", x=0, y=0), Resource("b", x=1, y=0)), (("a", "b"),)
+    robots = (Robot("r1", "a", "b"), Robot("r2", "b", "a"))
+    plans = tuple(Plan(each.id, (Visit(each.start, 0, 1), Visit(each.goal, 1, 2))) for each in robots)
+    shown = opened(driver, tmp_path, Instance(ResourceGraph(resources, edges), robots), Solution(plans, ("r1", "r2")))
+
+    def red(time: float) -> object:
+        shown.script(f"viewer.clock.set({time})")
+        return shown.number("[...new Set(viewer.map.broken.flatMap((each) => each.places))].sort()")
+
+    assert [red(time) for time in (0, 0.5, 1, 1.5, 2)] == [[], [0, 1], [0, 1], [0, 1], []]
 
 
 def test_a_click_on_a_violation_goes_to_its_tick_and_robots(collision: Page) -> None:
@@ -215,6 +227,24 @@ def at_robot(shown: Page, name: str, *events: str, right: int = 0) -> None:
 VIEW = "[viewer.map.x, viewer.map.y, viewer.map.scale]"
 
 
+def test_choosing_a_robot_zooms_to_it_and_keeps_it_in_sight(
+    driver: Chrome, tmp_path: Path, warehouse: tuple[Instance, Solution]
+) -> None:
+    shown = opened(driver, tmp_path, *warehouse)
+    assert shown.number("viewer.map.isWhole")
+    small = shown.number("viewer.map.scale")
+    shown.script("document.querySelectorAll('#robots button')[7].click()")
+    assert shown.number("viewer.map.scale") > 2 * small
+    for _ in range(12):
+        shown.press(Keys.ARROW_RIGHT)
+        x, y, _ = shown.robots()["r7"]
+        at = shown.number(f"[viewer.map.px({x}), viewer.map.py({y}), viewer.map.size.width, viewer.map.size.height]")
+        assert 0 <= at[0] <= at[2]
+        assert 0 <= at[1] <= at[3]
+    shown.press("0")
+    assert shown.number("viewer.map.scale") == small
+
+
 def test_the_map_is_moved_by_dragging_and_keys_and_zoomed_by_wheel_pinch_and_keys(
     driver: Chrome, tmp_path: Path, warehouse: tuple[Instance, Solution]
 ) -> None:
@@ -235,15 +265,6 @@ def test_the_map_is_moved_by_dragging_and_keys_and_zoomed_by_wheel_pinch_and_key
     shown.script("viewer.map.view.dispatchEvent(new WheelEvent('wheel', { deltaY: -100, clientX: 300, clientY: 200 }))")
     wheeled = shown.number(VIEW)[2]
     assert wheeled > before
-    for kind, pointer, x in (("down", 1, 300), ("down", 2, 400), ("move", 2, 500), ("up", 1, 300), ("up", 2, 500)):
-        shown.script(
-            "viewer.map.view.dispatchEvent(new PointerEvent(arguments[0],"
-            "{ pointerId: arguments[1], clientX: arguments[2], clientY: 200 }))",
-            f"pointer{kind}",
-            pointer,
-            x,
-        )
-    assert shown.number(VIEW)[2] == pytest.approx(min(4, 2 * wheeled))
 
 
 def test_robots_are_where_the_trace_says_and_rings_where_they_were_to_be(driver: Chrome, tmp_path: Path) -> None:
@@ -296,6 +317,20 @@ def test_a_click_in_the_chart_goes_to_its_tick_and_robot(collision: Page) -> Non
     )
     assert collision.tick == "tick 3 of 5"
     assert [each[:2] for each in collision.chosen("robots")] == ["r2"]
+
+
+def test_a_key_works_after_an_entry_was_clicked(collision: Page) -> None:
+    collision.click("#robots button", "r1")
+    collision.press(Keys.SPACE)
+    assert collision.text("play") == "Pause"
+
+
+def test_robots_are_found_by_name(collision: Page) -> None:
+    collision.click("#find")
+    collision.press("2")
+    assert collision.script("return document.querySelectorAll('#robots button:not([hidden])').length") == 1
+    collision.press(Keys.SPACE)
+    assert collision.text("play") == "Play"
 
 
 def test_hostile_ids_are_only_text(driver: Chrome, tmp_path: Path) -> None:
