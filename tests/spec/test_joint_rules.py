@@ -155,6 +155,16 @@ def test_two_robots_that_make_a_move_within_a_group_exchange() -> None:
     assert told(instance, same[0]) == []
 
 
+def test_where_following_is_forbidden_a_robot_enters_after_a_free_tick() -> None:
+    instance = replace(ROW, following="forbidden")
+    before = plan_of("r1", ("a", 0, 3), ("b", 3, 4))
+    assert told(instance, before, plan_of("r2", ("a", 4, 5))) == []
+    assert told(instance, before, plan_of("r2", ("a", 3, 4))) == [
+        "[joint/following] resource a in [3,4): robots r1, r2 (capacity 1, with a free tick after each robot)"
+    ]
+    assert told(ROW, before, plan_of("r2", ("a", 3, 4))) == []
+
+
 def test_a_solution_is_told_what_it_names_too_often_and_too_rarely() -> None:
     plans = tuple(plan_of(name) for name in ("r2", "r2", "r1", "r9"))
     solution = Solution(plans, ("r3", "r2", "r2", "r1"), ("r1", "r8"))
