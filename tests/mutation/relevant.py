@@ -16,6 +16,7 @@ ALSO: dict[str, list[str]] = {
     "carp_spec.plan_rules": ["test_check.py"],
     "carp_spec.joint_rules": ["test_check.py"],
     "carp_spec.rule": ["test_check.py"],
+    "carp_reference.time_expanded": ["test_twins.py"],
     "carp_spec.documents.instances": ["test_documents.py", "test_schema.py"],
     "carp_spec.documents.solutions": ["test_documents.py", "test_schema.py"],
     "carp_spec.documents.decoding": ["test_documents.py", "test_schema.py"],

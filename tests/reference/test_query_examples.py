@@ -47,11 +47,3 @@ def test_equal_arrivals_go_by_f_before_all() -> None:
     two = instance(grid(2, 3), ("0,0", "1,1"), ("1,2", "1,0"))
     committed = carp_reference.plan(Instance(two.graph, two.robots[:1]), Carp()).plans
     assert query(two, committed, "r1") == plan_of("r1", ("1,2", 0, 3), ("1,1", 3, 4), ("1,0", 4, 5))
-
-
-def test_a_certifier_gives_the_plan_of_a_query() -> None:
-    two = instance(line("abc"), ("b", "b"), ("a", "c"))
-    committed = (plan_of("r0", ("b", 0, 2)),)
-    certifier = carp_reference.certifier(two)
-    certifier.commit(committed)
-    assert certifier.certify("r1")[0] == carp_reference.find(two, committed, "r1")

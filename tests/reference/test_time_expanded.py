@@ -6,24 +6,7 @@ from tests.spec.making import instance, line, plan_of
 
 from carp_reference import time_expanded
 from carp_reference.time_expanded import find_plan_by_ticks
-from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
-
-
-def test_it_joins_ticks_into_visits() -> None:
-    two = instance(line("abc", b=2), ("b", "b"), ("a", "c"))
-    assert find_plan_by_ticks(two, (plan_of("r0", ("b", 0, 2)),), "r1") == plan_of(
-        "r1", ("a", 0, 2), ("b", 2, 4), ("c", 4, 5)
-    )
-
-
-def test_it_does_not_enter_what_does_not_lead_to_the_goal() -> None:
-    fork = ResourceGraph((Resource("a"), Resource("b"), Resource("c")), (("a", "c"), ("a", "b")), directed=True)
-    assert find_plan_by_ticks(instance(fork, ("a", "b")), (), "r0") == plan_of("r0", ("a", 0, 1), ("b", 1, 2))
-
-
-def test_it_ends_where_there_is_no_plan() -> None:
-    two = instance(line("abc"), ("b", "b"), ("a", "c"), after_goal="park")
-    assert find_plan_by_ticks(two, (plan_of("r0", ("b", 0, None)),), "r1") is None
+from carp_spec import Instance, Refusal, ResourceGraph, Robot
 
 
 def test_a_table_that_memory_should_not_hold_is_refused() -> None:
@@ -69,14 +52,3 @@ def test_a_robot_that_stayed_at_its_goal_too_long_to_vanish_there_comes_back_to_
     wandering = plan_of("r0", ("a", 0, 4), ("b", 4, 5), ("a", 5, 6))
     back = plan_of("r0", ("a", 0, 2), ("b", 2, 3), ("a", 3, 4))
     assert twin.find_plan_by_ticks(one, (), "r0", 2, wandering) == back
-
-
-def test_it_takes_the_longer_way_where_that_is_quicker() -> None:
-    slow = {"a": 5}
-    resources = tuple(Resource(name, duration=slow.get(name, 1)) for name in "sagbcde")
-    ring = ResourceGraph(
-        resources, (("s", "a"), ("a", "g"), ("s", "b"), ("b", "c"), ("c", "d"), ("d", "e"), ("e", "g"))
-    )
-    found = find_plan_by_ticks(instance(ring, ("s", "g")), (), "r0")
-    assert found is not None
-    assert [visit.resource for visit in found.visits] == ["s", "b", "c", "d", "e", "g"]
