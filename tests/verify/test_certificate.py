@@ -77,23 +77,6 @@ def test_a_capacity_of_any_size_is_never_exceeded_by_two_robots(capacity: int) -
 
 
 @pytest.mark.parametrize(
-    ("plans", "rule"),
-    [
-        ((Plan("r1", (Visit("a", 0, 1), Visit("c", 1, 2))),), "plan/move"),
-        ((EASTWARD, EASTWARD), "solution/covers"),
-        ((EASTWARD, Plan("r9", (Visit("a", 7, 8),))), "solution/covers"),
-    ],
-)
-def test_teleports_second_plans_and_strangers_are_refused(plans: tuple[Plan, ...], rule: str) -> None:
-    others = tuple(robot for robot in ("r1", "r2", "r3") if robot not in {plan.robot for plan in plans})
-    order = tuple(dict.fromkeys(plan.robot for plan in plans))
-    certified = certify(INSTANCE, Solution(plans, order, others))
-    assert not certified.accepted
-    assert [violation.rule for violation in certified.violations] == [rule]
-    assert (certified.resources, certified.pairs, certified.breaches) == (0, 0, ())
-
-
-@pytest.mark.parametrize(
     ("plans", "breaches"),
     [
         ((EASTWARD, WESTWARD, STANDING), []),

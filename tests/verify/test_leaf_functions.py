@@ -1,10 +1,9 @@
-"""Integer leaf functions of the specification, stated again in one line each.
+"""Integer leaf functions of the specification, stated again in one line each, on CrossHair.
 
-Under the nightly profile they run a second time on CrossHair, which looks for counterexamples by symbolic execution:
-it finds a `stay_fits` that is wrong for the one entry 123457, which random examples do not.
+It looks for counterexamples by symbolic execution, and finds a `stay_fits` that is wrong for the one entry 123457,
+which random examples do not.
 """
 
-import os
 from collections.abc import Callable
 
 import pytest
@@ -14,9 +13,7 @@ from hypothesis import strategies as st
 from carp_spec.neighbourhood_rules import replaces_best, replanned_from
 from carp_spec.windows import Window, occupancy, stay_fits
 
-NIGHTLY = os.environ.get("HYPOTHESIS_PROFILE") == "nightly"
-BACKENDS = ["hypothesis", "crosshair"] if NIGHTLY else ["hypothesis"]
-SYMBOLIC_EXAMPLES = 300
+EXAMPLES = 300
 
 Check = Callable[[int, int, int, int], None]
 
@@ -52,13 +49,12 @@ LEAVES: list[Check] = [
 ]
 
 
-@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.nightly
 @pytest.mark.parametrize("leaf", LEAVES, ids=lambda leaf: leaf.__name__)
-def test_a_leaf_function_does_what_one_line_says(leaf: Check, backend: str) -> None:
-    examples = settings().max_examples if backend == "hypothesis" else SYMBOLIC_EXAMPLES
-    numbers = st.integers() if backend == "crosshair" else st.integers(-5, 5)
+def test_a_leaf_function_does_what_one_line_says(leaf: Check) -> None:
+    numbers = st.integers()
 
-    @settings(backend=backend, max_examples=examples, deadline=None, database=None)
+    @settings(backend="crosshair", max_examples=EXAMPLES, deadline=None, database=None)
     @given(numbers, numbers, numbers, numbers)
     def check(first: int, second: int, third: int, fourth: int) -> None:
         leaf(first, second, third, fourth)

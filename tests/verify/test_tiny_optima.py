@@ -13,7 +13,6 @@ from carp_spec.permutations import shuffle
 from carp_verify.optimum.encoding import Encoding, Evidence, beat_formula, reach_formula
 from carp_verify.optimum.joint_search import least_total_cost
 from carp_verify.optimum.proof import solution_of
-from carp_verify.optimum.robot_clauses import Node, RobotClauses
 from carp_verify.optimum.unsolvable import FullGoal, NoWay, Obstacle, why_no_obstacle
 from carproof.testing.random_instances import Draw, Mix
 
@@ -122,19 +121,3 @@ def model_of(encoding: Encoding) -> Sequence[bool] | None:
 def test_search_and_formulas_agree_with_the_joint_search(first: int) -> None:
     found = {number: list(faults(number)) for number in range(first, first + BLOCK)}
     assert {number: reported for number, reported in found.items() if reported} == {}
-
-
-def test_parked_robots_that_may_not_pass_over_their_goal_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With this fault, at least 758 was proved of two robots on a star, whose plans cost 6."""
-
-    def leads_to(robot: RobotClauses, node: Node) -> list[Node]:
-        return [each for each in unchanged(robot, node) if each[0] == node[0] or each[0] != robot.robot.goal]
-
-    unchanged = RobotClauses.leads_to
-    monkeypatch.setattr(RobotClauses, "leads_to", leads_to)
-    noticed = []
-    for number in range(BLOCK):
-        instance, draw = case(number)
-        if not Encoding(instance).wayless:
-            noticed += list(faults_of_bounds(instance, draw, least_total_cost(instance)))
-    assert noticed

@@ -4,18 +4,13 @@ from dataclasses import replace
 from time import process_time
 from typing import Any
 
-import numpy as np
 import pytest
 from hypothesis import given
 
 from carp_optimized.improve import planning
-from carp_optimized.improve.checking import require_lawful
-from carp_optimized.improve.crowds import FAR, Crowd, crowd_of, is_stepwise, measure
+from carp_optimized.improve.crowds import is_stepwise
 from carp_optimized.improve.lacam import plans_by_steps
-from carp_optimized.improve.planning import Clock as Timer
-from carp_optimized.improve.planning import first_paths, improve_crowd
-from carp_optimized.improve.stays import Paths
-from carp_optimized.jit.references import Native
+from carp_optimized.improve.planning import improve_crowd
 from carp_spec import AfterGoal, Instance, RobotId, Solution, judge, total_cost
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import Sizes, instances
@@ -117,40 +112,3 @@ def test_given_plans_get_better_within_the_time() -> None:
     assert judge(instance, found).valid
     assert total_cost(instance, found.plans) < total_cost(instance, given.plans)
     assert improve_crowd(instance, given, 0.001, clock=process_time) == given
-
-
-def paths_on_a_grid() -> tuple[Crowd, Paths]:
-    made = crowd_of(crowd(6, 12))
-    measure(Native(made), np.arange(12, dtype=np.int32), 0, 12, FAR)
-    return made, first_paths(made, Timer(None, lambda: 0.0, 0.0), 0)[0]
-
-
-@pytest.mark.parametrize("visit", ["start", "goal", "jump", "late", "overlap", "swap"])
-def test_paths_that_break_a_rule_are_noticed(visit: str) -> None:
-    made, paths = paths_on_a_grid()
-    require_lawful(made, paths)
-    longest = int(np.argmax(paths.size))
-    middle = int(paths.size[longest]) // 2
-    if visit == "start":
-        paths.place[longest, 0] = paths.place[longest, 1]
-    elif visit == "goal":
-        paths.size[longest] -= 1
-    elif visit == "jump":
-        paths.place[longest, middle] = paths.place[longest, middle + 1]
-    elif visit == "late":
-        paths.enter[longest, middle] = paths.enter[longest, middle + 1]
-    elif visit == "overlap":
-        other = (longest + 1) % 12
-        made.start[other], made.goal[other] = made.start[longest], made.goal[longest]
-        for each in paths:
-            each[other] = each[longest]
-    else:
-        places = paths.place[longest, :2].tolist()
-        for robot, way in ((0, places), (1, places[::-1])):
-            paths.size[robot] = 2
-            paths.place[robot, :2] = way
-            paths.enter[robot, :2] = 0, 1
-            made.start[robot], made.goal[robot] = way
-        paths.size[2:] = 0
-    with pytest.raises(AssertionError, match="break a rule"):
-        require_lawful(made, paths)
