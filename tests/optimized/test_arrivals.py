@@ -5,32 +5,24 @@ from tests.optimized.arrivals import CROWDED, ROOMS, arrivals, convoy, scaled
 from tests.profiles import rest_in
 
 from carp_optimized.state import encoding
+from carproof.testing.random_instances import Mix
 
 QUESTIONS = 600
 PARTS = 6
 
 
+@pytest.mark.parametrize("mix", [CROWDED, ROOMS], ids=["crowded", "more robots than resources"])
 @pytest.mark.parametrize("part", rest_in("ci", range(PARTS), 0))
-def test_robots_that_arrive_while_time_passes_are_planned_alike(part: int) -> None:
+def test_robots_that_arrive_are_planned_alike_also_where_guides_end_early(
+    monkeypatch: pytest.MonkeyPatch, part: int, mix: Mix
+) -> None:
     for number in range(part, QUESTIONS, PARTS):
-        question = arrivals(number)
-        assert question.by_fleet()[0] == question.by_reference(), number
-
-
-@pytest.mark.parametrize("part", rest_in("ci", range(PARTS), 0))
-def test_more_robots_than_resources_are_planned_alike(part: int) -> None:
-    for number in range(part, QUESTIONS, PARTS):
-        question = arrivals(number, ROOMS)
-        assert question.by_fleet()[0] == question.by_reference(), number
-
-
-@pytest.mark.parametrize("detour", [0, 1])
-@pytest.mark.parametrize("part", rest_in("ci", range(PARTS), 0))
-def test_guides_that_end_early_change_no_plan(monkeypatch: pytest.MonkeyPatch, part: int, detour: int) -> None:
-    monkeypatch.setattr(encoding, "DETOUR", detour)
-    for number in range(part, QUESTIONS, PARTS):
-        question = arrivals(number, ROOMS if number % 2 else CROWDED)
-        assert question.by_fleet()[0] == question.by_reference(), number
+        question = arrivals(number, mix)
+        expected = question.by_reference()
+        for detour in (encoding.DETOUR, number // PARTS % 2):
+            with monkeypatch.context() as patched:
+                patched.setattr(encoding, "DETOUR", detour)
+                assert question.by_fleet()[0] == expected, (number, detour)
 
 
 @pytest.mark.parametrize(("space", "time"), [(2**11, 2**17), (2**26, 1), (2**26, 2**17)])

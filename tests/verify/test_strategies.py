@@ -7,7 +7,6 @@ from hypothesis import HealthCheck, Phase, find, given, settings
 
 import carp_reference
 from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, judge
-from carp_spec.instance_rules import instance_faults
 from carp_spec.joint_rules import JOINT_RULES, SOLUTION_RULES
 from carp_spec.permutations import splitmix64
 from carp_spec.plan_rules import PLAN_RULES
@@ -15,7 +14,6 @@ from carproof.testing.mutations import MUTATIONS, BrokenSolution, Mutation
 from carproof.testing.random_instances import Draw, Mix, draw_instance
 from carproof.testing.strategies import (
     FleetUnderWay,
-    PlannedInstance,
     Sizes,
     broken_solutions,
     fleets_under_way,
@@ -27,16 +25,6 @@ SHRINK = settings(max_examples=20_000, derandomize=True, database=None, suppress
 SEARCH = settings(SHRINK, phases=[Phase.generate])
 WITH_ALL = Sizes(groups=2, stops=2, service=3)
 MIX = Mix(groups=(0, 1, 2), stops=3, services=(0, 3))
-
-
-@given(instances())
-def test_instances_have_no_faults(instance: Instance) -> None:
-    assert instance_faults(instance) == ()
-
-
-@given(planned_instances() | planned_instances(WITH_ALL))
-def test_planned_instances_break_no_rule(planned: PlannedInstance) -> None:
-    assert judge(planned.instance, planned.solution).violations == ()
 
 
 @given(broken_solutions() | broken_solutions(WITH_ALL))
