@@ -42,7 +42,7 @@ OUTCOMES = ("oracle/test_conform_outcome",)
 LEMMAS = ("verify/test_lemmas", "verify/test_formulas")
 TESTS: Mapping[str, Sequence[str]] = {
     "carp_spec.instance_rules": ("spec/test_instance_rules", "spec/test_plan_rules", "oracle/test_assign"),
-    "carp_spec.plan_rules": ("spec/test_plan_rules", "spec/test_check"),
+    "carp_spec.plan_rules": ("spec/test_plan_rules", "spec/test_check", "verify/test_rules_as_properties"),
     "carp_spec.execution.logs": ("spec/test_logs", "oracle/test_check_log"),
     "carp_spec.requests": ("oracle/test_assign",),
     "carp_spec.polish_rules": ("spec/test_polish_rules",),

@@ -13,7 +13,7 @@ import pytest
 PLUGINS_LEFT_OUT = ["-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:cov"]
 TOO_LONG = ["-k", "not every_small_query"]
 ALSO: dict[str, list[str]] = {
-    "carp_spec.plan_rules": ["test_check.py"],
+    "carp_spec.plan_rules": ["test_check.py", "../verify/test_rules_as_properties.py"],
     "carp_spec.joint_rules": ["test_check.py"],
     "carp_spec.rule": ["test_check.py"],
     "carp_reference.time_expanded": ["test_twins.py"],

@@ -211,6 +211,12 @@ def test_a_plan_through_a_hub_of_very_many_moves_is_checked_in_time() -> None:
     assert process_time() - started < 2
 
 
+def test_a_plan_without_visits_has_no_start_and_no_goal_and_nowhere_has_no_moves() -> None:
+    assert rules_broken(VANISHING, (plan_of("r1"),)) == ["plan/start", "plan/goal"]
+    lost = plan_of("r1", ("a", 0, 2), ("x", 2, 3), ("b", 3, 4))
+    assert rules_broken(VANISHING, (lost,)) == ["plan/goal", "plan/resource"]
+
+
 def test_a_verdict_sums_the_costs_and_counts_the_unplanned() -> None:
     verdict = judge(VANISHING, solution_of(SOLVED[:2], unplanned=("r3",)))
     assert (verdict.valid, verdict.cost, verdict.unplanned) == (True, 5 + 3, 1)
@@ -242,5 +248,6 @@ def test_each_violation_planted_in_the_rest_of_a_solution_is_found(solution: Sol
 def test_an_update_is_checked_robot_by_robot() -> None:
     again = plan_of("r2", ("e", 1, 3), ("b", 3, 5), ("a", 5, 6))
     assert check_update(SOLVED, (SOLVED[0], again), now=1) == ()
-    assert [each.robots for each in check_update(SOLVED, (SOLVED[0], again), now=2)] == [("r2",), ("r2",)]
+    told = [(each.robots, each.resource, each.start) for each in check_update(SOLVED, (SOLVED[0], again), now=2)]
+    assert told == [(("r2",), "e", 1), (("r2",), "b", 3)]
     assert check_update(SOLVED, (), now=2) == ()

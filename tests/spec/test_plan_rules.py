@@ -54,6 +54,7 @@ def test_a_visit_serves_the_next_stop_if_it_is_there_for_long_enough(visits: int
     assert stops_served(PICK.stops, BUSY.visits[:visits]) == served
     assert stops_served(PICK.stops[:-1], BUSY.visits[:visits]) == min(served, 3)
     assert stops_served(PICK.stops, [Visit("a", 7, 10)]) == 0, "it is there for 3 of 4 ticks"
+    assert stops_served(PICK.stops, [Visit("c", 0, 9)]) == 0, "it is elsewhere"
     under_way = [*BUSY.visits[: visits - 1], structs.replace(BUSY.visits[visits - 1], leave=None)] if visits else []
     assert stops_served(PICK.stops, under_way) == stops_served(PICK.stops, BUSY.visits[: max(visits - 1, 0)])
 
