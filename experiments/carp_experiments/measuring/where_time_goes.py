@@ -29,7 +29,7 @@ PHASES = {
     "prioritized planning": "_planned_in_order",
     "rounds": "improved",
     "check": "require_lawful",
-    "plans as a solution": "solution",
+    "plans as a solution": "solution_along",
 }
 """The functions of `plan_within` whose shares are shown."""
 
