@@ -37,6 +37,11 @@ def test_carproof_conforms_to_its_strictest_level(process: Run, engine: list[str
     assert (int(re.findall(r"had (\d+) robots", extent)[0]) >= 10) is is_any_large
 
 
+def test_each_run_draws_new_cases_by_a_seed_that_it_names(carproof: Run) -> None:
+    seeds = [json.loads(carproof("conform --json --examples 0 -- false").stdout)["seed"] for _ in range(2)]
+    assert seeds[0] != seeds[1]
+
+
 LIMITS = """
 import json, sys
 

@@ -1,12 +1,13 @@
 """MovingAI maps and scenarios: what they mean, and where a broken one is wrong."""
 
+import json
 from pathlib import Path
 
 import pytest
 from tests.oracle.running import Run
 
 from carproof import read_instance
-from carproof.formats.movingai import read_map
+from carproof.formats.movingai import read_map, read_scenario
 
 EXAMPLES = Path(__file__).parent.parent.parent / "oracle/carproof/examples"
 MAP = "type octile\nheight 2\nwidth 3\nmap\n.G@\nS.T\n"
@@ -66,3 +67,15 @@ def test_a_broken_file_is_refused_with_name_and_line(
 
 def test_lines_of_a_map_may_end_as_on_windows() -> None:
     assert read_map(MAP.replace("\n", "\r\n").encode()) == read_map(MAP.encode())
+
+
+def test_agents_beyond_the_last_asked_for_are_not_read() -> None:
+    grid = read_map(MAP.encode())
+    assert len(read_scenario((SCENARIO + "nonsense\n").encode(), grid, 2)) == 2
+
+
+def test_after_goal_can_be_vanish_and_all_agents_are_the_default(carproof: Run) -> None:
+    outcome = carproof("convert", EXAMPLES / "depot.map", EXAMPLES / "depot.scen", "--after-goal", "vanish")
+    document = json.loads(outcome.stdout)
+    assert document["after_goal"] == "vanish"
+    assert len(document["robots"]) == 30

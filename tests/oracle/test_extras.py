@@ -91,3 +91,17 @@ def test_an_op_without_its_extra_names_it_and_the_server_goes_on(folder: Path) -
     assert "the op optimum needs python-sat of the extra prove" in refused["error"]["message"]
     assert stopped == {"id": 2, "result": {}}
     assert done.stderr == b""
+
+
+def test_another_projects_tests_run_without_hypothesis_and_a_judgement_names_it(folder: Path) -> None:
+    (folder / "pytest.ini").write_text("[pytest]\n")
+    (folder / "test_mine.py").write_text(
+        "def test_nothing():\n    pass\ndef test_planner(carproof):\n    carproof.conforms(print)\n"
+    )
+    done = run(
+        "import os, pytest\nos.environ['PYTEST_DISABLE_PLUGIN_AUTOLOAD'] = '1'  # hypothesis' own\n"
+        "sys.exit(pytest.main(['-q', '-p', 'carproof.pytest_plugin', '-p', 'no:cacheprovider']))",
+        folder,
+    )
+    assert b"1 failed, 1 passed" in done.stdout, done.stdout.decode()
+    assert b"carproof.conforms needs hypothesis" in done.stdout

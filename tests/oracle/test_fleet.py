@@ -30,6 +30,8 @@ from carproof import (
     check,
     check_update,
 )
+from carproof.generate import Fleet as Drawn
+from carproof.generate import Grid, grid_instance
 from carproof.testing.random_instances import Draw, draw_instance
 
 QUESTIONS = 240
@@ -292,6 +294,21 @@ def whole_of(before: Plan, after: Plan) -> Plan:
     return replace(after, visits=(*before.visits[:count], *after.visits))
 
 
+def test_robots_added_after_a_polish_have_the_plans_of_the_same_documents() -> None:
+    changed = 0
+    for number in range(12):
+        instance = grid_instance(Grid(8, 8), Drawn(robots=26, seed=number))
+        fleet = Fleet(replace(instance, robots=()), planner=Neighbourhood(m=3))
+        fleet.add(*instance.robots[:-3])
+        changed += len(fleet.polish(iterations=3, seed=number).plans)
+        for robot in instance.robots[-3:]:
+            further = replace(fleet.instance, robots=(*fleet.instance.robots, robot))
+            whole = carp_optimized.add(further, fleet.solution, robot.id, 0, Neighbourhood(m=3))
+            fleet.add(robot)
+            assert {*fleet.solution.plans} == {*whole.plans}, number
+    assert changed > 12
+
+
 def test_a_polish_keeps_what_was_done() -> None:
     drawn = [question(number) for number in range(60)]
     changed = 0
@@ -354,6 +371,37 @@ def test_what_is_refused_changes_nothing(monkeypatch: pytest.MonkeyPatch, name: 
     if name == "limit/ticks service":
         assert refusal.value.path == "$.stops"
     assert_alike(fleet, twin)
+
+
+ODD: tuple[object, ...] = (
+    True,
+    1.0,
+    -1,
+    0,
+    1,
+    "a",
+    "nowhere",
+    None,
+    (),
+    [],
+    (Stop("b", -1),),
+    (Stop("q"),),
+    [Stop("b")],
+)
+
+
+@pytest.mark.parametrize("field", ["id", "start", "stops", "release", "pace"])
+def test_one_robot_is_refused_as_several_are(field: str) -> None:
+    for value in ODD:
+        odd = Robot("x", "a", "b")
+        object.__setattr__(odd, field, value)
+        refusals = []
+        for others in ((), (Robot("y", "a", "b"),)):
+            try:
+                Fleet(lane()).add(odd, *others)
+            except Refusal as refusal:
+                refusals.append((refusal.rule, refusal.path, refusal.message))
+        assert refusals in ([], 2 * refusals[:1]), value
 
 
 def assert_alike(fleet: Fleet, twin: Fleet) -> None:

@@ -162,6 +162,23 @@ def test_a_kernel_that_differs_is_a_contradiction(carproof: Run, monkeypatch: py
     assert "Internal contradiction: " in outcome.stderr
 
 
+def test_a_refusal_that_the_kernel_shares_is_shown_with_the_violations_of_the_specification(
+    carproof: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stand_in(monkeypatch, verdict="refused", rule="joint/capacity", message="it is wrong")
+    outcome = carproof("check town.json broken.json --kernel")
+    assert outcome.code == 1
+    assert "[joint/capacity]" in outcome.stdout
+    assert outcome.stdout.endswith(f"decided by {PROGRAM} 7\n")
+
+
+def test_a_size_that_only_python_refuses_is_no_contradiction(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    far = 10**9
+    save(bound={**json.loads(Path("bound.json").read_text()), "horizon": far, "resources": [["a", far - 1, 1]]})
+    stand_in(monkeypatch, verdict="accepted", bound=5)
+    assert carproof(COMMANDS[4]).code == 0
+
+
 def test_a_proof_is_verified_without_a_kernel_that_cannot_decide(
     carproof: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:

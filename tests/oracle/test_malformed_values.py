@@ -286,6 +286,7 @@ NO_DELAY: Any = [("r", 0, 1)]
 NO_TICKS: Any = [Delay("r", 0, True)]
 NO_FOOTPRINT: Any = (900, 600)
 NONE: Any = None
+INFINITE = float("inf")
 
 
 @pytest.mark.parametrize(
@@ -310,6 +311,8 @@ NONE: Any = None
             "$.limit",
         ),
         (lambda: carproof.check(RIGHT, SOLVED, -1), "request/limit", "$.most"),
+        (lambda: carproof.audit(RIGHT, SOLVED, seconds=0), "request/limit", "$.seconds"),
+        (lambda: carproof.check_grants(RIGHT, SOLVED, NOTHING, (), seconds=INFINITE), "request/limit", "$.seconds"),
         (lambda: carproof.judge_log(RIGHT, NOTHING, 2**64), "request/limit", "$.most"),
         (lambda: carp_spec.violations_of(RIGHT, SOLVED.plans, 0.5), "request/limit", "$.most"),  # type: ignore[arg-type]
         (lambda: grid_instance(Grid(width=2.0)), "generate/options", "$.width"),  # type: ignore[arg-type]

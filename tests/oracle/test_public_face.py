@@ -55,6 +55,12 @@ def test_importing_the_face_loads_none_of_the_packages() -> None:
     assert loaded.split() == ["carproof"]
 
 
+def test_no_public_name_is_that_of_a_module() -> None:
+    folder = ROOT / "oracle" / "carproof"
+    modules = {path.stem for path in folder.glob("*.py")} | {path.parent.name for path in folder.glob("*/__init__.py")}
+    assert not modules & {*carproof.__all__}
+
+
 def test_the_documentation_imports_public_names_alone() -> None:
     private = []
     for page in [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]:

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -13,13 +14,15 @@ from tests.oracle.viewing import COLLIDING, CORRIDOR, HOSTILE, SVG, picture_of, 
 
 from carp_reference import plan
 from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit
-from carproof import Trace, read_instance, read_solution
+from carproof import Settings, Trace, import_layout, read_instance, read_solution
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.viewer.map_picture import ROBOT_RADIUS
 from carproof.viewer.page import view
 from carproof.viewer.stills import view_map
 
 LATER = 30
+READABLE = 8
+"""The least height of a name, in pixels."""
 FEWEST_FRAMES = 30
 FRAMES = 30
 CHART_IS_DRAWN = "return document.getElementById('chart').width > 400"
@@ -115,6 +118,27 @@ def test_the_page_and_the_still_agree_on_a_plant(driver: Chrome, tmp_path: Path)
         assert drawn == pytest.approx(placed(still[-1][0].get("transform", "")), abs=1)
         shown.script("document.getElementById('forward').click()")
     assert logged(driver, "browser") == []
+
+
+def test_names_of_a_plant_are_readable_where_it_is_drawn_small_and_none_is_over_another(
+    driver: Chrome, tmp_path: Path
+) -> None:
+    shown = opened(driver, tmp_path, *row_of_bays(24))
+    boxes = shown.script(
+        "return [...document.querySelectorAll('.point-name')].map((name) => name.getBoundingClientRect())"
+        ".map((box) => [box.left, box.right, box.height])"
+    )
+    assert len(boxes) == 24
+    assert all(height > READABLE for _, _, height in boxes)
+    assert all(one[1] <= other[0] for one, other in pairwise(sorted(boxes)))
+
+
+def row_of_bays(count: int) -> tuple[Instance, Solution]:
+    """Points in a row, with a lane from each to the next."""
+    nodes = [{"id": f"bay-{number}", "x": 4 * number, "y": number % 2} for number in range(count)]
+    links = [{"source": f"bay-{number}", "target": f"bay-{number + 1}"} for number in range(count - 1)]
+    row = json.dumps({"directed": True, "nodes": nodes, "links": links})
+    return import_layout(row.encode(), settings=Settings(robots=0)).instance, Solution((), ())
 
 
 def placed(transform: str) -> tuple[float, ...]:
