@@ -96,37 +96,30 @@ def rightly_planned(case: Case) -> Solution:
     return engine_named(None).plan(case.instance, Carp())
 
 
+def with_visits(case: Case, change: Callable[[Visit], Visit]) -> Solution | None:
+    """The right plans with changed visits; `None` if no visit is another one then."""
+    solution = rightly_planned(case)
+    plans = tuple(Plan(plan.robot, tuple(map(change, plan.visits))) for plan in solution.plans)
+    return replace(solution, plans=plans) if plans != solution.plans else None
+
+
 def short_ticks(case: Case) -> Reply | None:
     """Ticks of 16 bits."""
-    solution = rightly_planned(case)
 
     def cut(tick: int) -> int:
         return (tick + BIT_15) % (2 * BIT_15) - BIT_15
 
-    plans = tuple(
-        Plan(
-            plan.robot,
-            tuple(Visit(v.resource, cut(v.enter), None if v.leave is None else cut(v.leave)) for v in plan.visits),
-        )
-        for plan in solution.plans
-    )
-    return replace(solution, plans=plans) if plans != solution.plans else None
+    return with_visits(case, lambda v: Visit(v.resource, cut(v.enter), None if v.leave is None else cut(v.leave)))
 
 
 def short_ids(case: Case) -> Reply | None:
     """Ids of resources of 32 bits."""
-    solution = rightly_planned(case)
-    plans = tuple(
-        Plan(
-            plan.robot,
-            tuple(
-                structs.replace(v, resource=v.resource % BIT_31) if isinstance(v.resource, int) else v
-                for v in plan.visits
-            ),
-        )
-        for plan in solution.plans
-    )
-    return replace(solution, plans=plans) if plans != solution.plans else None
+
+    def cut(visit: Visit) -> Visit:
+        id = visit.resource
+        return structs.replace(visit, resource=id % BIT_31) if isinstance(id, int) else visit
+
+    return with_visits(case, cut)
 
 
 def gives_up_late(case: Case) -> Reply | None:
@@ -173,6 +166,10 @@ def arrives_only(case: Case) -> Reply | None:
     return query_document(Plan(plan.robot, (*visits, structs.replace(last, leave=leave))))
 
 
+def early(robot: Robot) -> Robot:
+    return replace(robot, release=min(robot.release, 10**5))
+
+
 def short_services(robot: Robot) -> Robot:
     return replace(robot, stops=tuple(replace(stop, service=min(stop.service, 5)) for stop in robot.stops))
 
@@ -203,8 +200,16 @@ def any_order(case: Case) -> Reply:
     return engine_named(None).plan(turned, Carp())
 
 
-def _capacity(most: int) -> Callable[[Case], Reply | None]:
+def capacities_beyond(most: int) -> Callable[[Case], Reply | None]:
     return believing(lambda each: replace(each, capacity=10**6) if each.capacity > most else each, lambda each: each)
+
+
+def durations_up_to(most: int) -> Callable[[Case], Reply | None]:
+    return believing(lambda each: replace(each, duration=min(each.duration, most)), lambda each: each)
+
+
+def robots_are(change: Callable[[Robot], Robot]) -> Callable[[Case], Reply | None]:
+    return believing(lambda each: each, change)
 
 
 BUDGETS = (0.0, 1.0, 3.0, 10.0, 30.0, 100.0)
@@ -217,37 +222,19 @@ BUGS: Sequence[Bug] = (
     Bug("no collision check", "64 robots", "plan", SOUND, beyond(robots, 64, alone)),
     Bug("no collision check", "255 robots", "plan", SOUND, beyond(robots, 255, alone)),
     Bug("no collision check", "1,024 resources", "plan", SOUND, beyond(resources, 1024, alone)),
-    Bug("capacities are unlimited", "capacity 2", "plan", SOUND, _capacity(2)),
-    Bug("capacities are unlimited", "capacity 10", "plan", SOUND, _capacity(10)),
-    Bug(
-        "durations are cut",
-        "duration 9",
-        "plan",
-        SOUND,
-        believing(lambda r: replace(r, duration=min(r.duration, 9)), lambda r: r),
-    ),
-    Bug(
-        "durations are cut",
-        "duration 255",
-        "plan",
-        SOUND,
-        believing(lambda r: replace(r, duration=min(r.duration, 255)), lambda r: r),
-    ),
-    Bug("paces are cut", "pace 3", "plan", SOUND, believing(lambda r: r, lambda r: replace(r, pace=min(r.pace, 3)))),
-    Bug(
-        "releases are cut",
-        "tick 100,000",
-        "plan",
-        SOUND,
-        believing(lambda r: r, lambda r: replace(r, release=min(r.release, 10**5))),
-    ),
+    Bug("capacities are unlimited", "capacity 2", "plan", SOUND, capacities_beyond(2)),
+    Bug("capacities are unlimited", "capacity 10", "plan", SOUND, capacities_beyond(10)),
+    Bug("durations are cut", "duration 9", "plan", SOUND, durations_up_to(9)),
+    Bug("durations are cut", "duration 255", "plan", SOUND, durations_up_to(255)),
+    Bug("paces are cut", "pace 3", "plan", SOUND, robots_are(lambda robot: replace(robot, pace=min(robot.pace, 3)))),
+    Bug("releases are cut", "tick 100,000", "plan", SOUND, robots_are(early)),
     Bug("no collision check", "tick 32,767", "plan", SOUND, late_collisions),
     Bug("ticks have 16 bits", "tick 32,767", "plan", SOUND, short_ticks),
     Bug("ids have 32 bits", "id 2^31", "plan", SOUND, short_ids),
     Bug("the others are forgotten", "20 robots", "add", SOUND, beyond(robots, 20, others_lost)),
     Bug("the search ends", "500 ticks", "query", Level.COMPLETE_IN_CONTEXT, gives_up_late),
     Bug("a tick too late", "40 plans", "query", OPTIMAL, waits),
-    Bug("services are cut", "service 5", "plan", SOUND, believing(lambda r: r, short_services), Claims(stops=True)),
+    Bug("services are cut", "service 5", "plan", SOUND, robots_are(short_services), Claims(stops=True)),
     Bug("another order", "50 robots", "plan", Level.EXACT, beyond(robots, 50, any_order)),
 )
 

@@ -100,17 +100,12 @@ def test_a_function_that_raises_or_returns_something_else_has_a_fault() -> None:
         raise SystemExit(f"{len(instance.robots)} robot\nand more")
 
     crash = fault_of(raises)
-    assert (crash.category, crash.rule, crash.message) == (
-        Category.CRASH,
-        "program/alive",
-        "it raised SystemExit: 1 robot",
-    )
+    assert (crash.category, crash.rule) == (Category.CRASH, "program/alive")
+    assert "1 robot" in crash.message
     assert "Traceback" in crash.stderr
     others: tuple[object, ...] = (None, {}, "solution")
     for returned in others:
-        finding = fault_of(lambda _, returned=returned: returned)
-        message = f"a planner must return a carp_spec.Solution, not {type(returned).__name__}"
-        assert (finding.rule, finding.message) == ("program/result", message)
+        assert fault_of(lambda _, returned=returned: returned).rule == "program/result"
     unreadable = fault_of(lambda _: Solution((object(),), ()))  # type: ignore[arg-type]
     assert (unreadable.rule, unreadable.category) == ("program/result", Category.PROTOCOL_ERROR)
 

@@ -28,6 +28,7 @@ from carproof.conform.findings import (
     tries_enough,
     wrong,
 )
+from carproof.conform.judging.deciding import Tally
 from carproof.conform.judging.gave_up import Effort
 from carproof.conform.judging.outcome import Outcome
 from carproof.conform.levels import EXECUTOR_LEVELS, JUDGED_OPS, Level
@@ -60,11 +61,26 @@ def failed(stage: Stage = "random", op: str = "query", finding: Finding = WRONG,
     return Outcome(case(stage, op, robots), finding, NOBODY)
 
 
+def tally(*outcomes: Outcome) -> Tally:
+    counted = Tally()
+    for outcome in outcomes:
+        counted.add(outcome)
+    return counted
+
+
 def report(level: Level, *outcomes: Outcome) -> Report:
     made = Report(Options(level))
     for outcome in outcomes:
         made.add(outcome)
     return made
+
+
+def test_a_tally_counts_right_answers_of_cases_that_could_be_asked() -> None:
+    outcomes = (tried(), tried(effort=Effort.GAVE_UP), tried(effort=Effort.NOTHING_TO_DO), skipped(), not_asked())
+    counted = tally(*outcomes, failed())
+    assert (counted.asked, counted.answered, counted.tried, counted.gave_up) == (5, 3, 1, 1)
+    assert str(counted) == "3 of 5, 1 given up"
+    assert str(tally(tried(), tried())) == "2 of 2"
 
 
 @pytest.mark.parametrize(
@@ -79,7 +95,7 @@ def report(level: Level, *outcomes: Outcome) -> Report:
         ((*[tried()] * 8, skipped()), False),
         ((tried(), tried(effort=Effort.GAVE_UP)), True),
         ((tried(), *[tried(effort=Effort.GAVE_UP)] * 2), False),
-        ((tried(), not_asked(), not_asked("smoke")), True),
+        ((tried(), not_asked(), not_asked("smoke"), skipped("vectors")), True),
         ((failed("smoke"), tried()), False),
         ((tried(op="bound"),), False),
         ((), False),

@@ -12,7 +12,7 @@ from tests.profiles import draws
 
 from carp_spec import Solution, check_update, judge, violations_of
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
-from carproof import Delay, read_instance, read_solution, read_trace
+from carproof import Delay, read_instance, read_solution
 from carproof.engines import engine_named
 from carproof.execution.simulation import execute, random_delays
 from carproof.execution.untangling import untangle
@@ -103,22 +103,6 @@ def solution_of(folder: Path, name: str) -> Solution:
     return read_solution((folder / f"{name}.json").read_bytes())
 
 
-def test_plans_after_a_delay_keep_what_has_happened(late_town: Path, carproof: Run) -> None:
-    assert carproof("check town.json late.json").code == 0
-    before, late = solution_of(late_town, "plans"), solution_of(late_town, "late")
-    happened = read_trace((late_town / "trace.json").read_bytes())
-    assert happened.now == 4
-    done = {plan.robot: plan.visits for plan in happened.plans}
-    for old, new in zip(before.plans, late.plans, strict=True):
-        made = done[new.robot]
-        assert [(visit.resource, visit.enter) for visit in new.visits[: len(made)]] == [
-            (visit.resource, visit.enter) for visit in made
-        ]
-        assert [visit.resource for visit in new.visits] == [visit.resource for visit in old.visits]
-        assert all(visit.enter > 4 for visit in new.visits[len(made) :])
-    assert late.plans != before.plans
-
-
 def test_a_robot_is_added_to_plans_after_a_delay(late_town: Path, carproof: Run) -> None:
     assert carproof("add town.json late.json r8 --now 4 --engine reference -o added.json").code == 1
     earlier = json.loads(Path("town.json").read_bytes())
@@ -142,18 +126,6 @@ def test_what_a_trace_tells_stays_where_plans_change_from_the_next_tick_on(carpr
         assert carproof(f"polish row.json late.json --now {now} --iterations 9 -o better.json").code == 0
         left.append(solution_of(elsewhere, "better").plans[0].visits[0].leave)
     assert left == [2, 3]
-
-
-def test_an_audit_names_who_is_late_after_a_delay_and_nobody_before(late_town: Path, carproof: Run) -> None:
-    assert carproof("audit town.json plans.json --engine reference").code == 0
-    outcome = carproof("audit town.json late.json --engine reference --json")
-    assert outcome.code == 1
-    audit = json.loads(outcome.stdout)
-    arrivals = {plan.robot: plan.visits[-1].enter for plan in solution_of(late_town, "plans").plans}
-    after = {plan.robot: plan.visits[-1].enter for plan in solution_of(late_town, "late").plans}
-    late = {each["robot"] for each in audit["late"]}
-    assert late == {robot for robot, tick in after.items() if tick > arrivals[robot]}
-    assert {*audit["certified"]} == after.keys() - late
 
 
 def test_a_rotation_is_untangled_at_least_cost_or_named(carproof: Run, elsewhere: Path) -> None:

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
-from tests.oracle.running import HEAD_ON, TWO_PLANNED, Document, Outcome, Run, corridor, save
+from tests.oracle.running import HEAD_ON, Document, Outcome, Run, corridor, save
 
 UNSOLVABLE = corridor([{"id": "r1", "start": "a", "goal": "e"}, HEAD_ON])
 
@@ -41,18 +41,6 @@ def test_an_undecided_search_says_so_and_gives_its_bound(carproof: Run) -> None:
     document = json.loads(outcome.stdout)
     assert (outcome.code, document["decided"]) == (3, False)
     assert document["lower"] > 1000
-
-
-def test_a_proof_is_written_and_checked(carproof: Run) -> None:
-    outcome = carproof("optimum town.json --proof proof")
-    assert (outcome.code, outcome.stdout.splitlines()[-1].split()[3:5]) == (0, ["5", "proved"])
-    document = document_of(carproof, "optimum town.json --proof proof")
-    assert (document["decided"], document["proved"]) == (True, True)
-    outcome = carproof("verify proof --instance town.json")
-    assert (outcome.code, outcome.stderr) == (0, "")
-    assert outcome.stdout.splitlines()[-1].split() == ["5", "2", "checked", "sat", "unsat"]
-    proved = {"proved": True, "claim": "optimum", "cost": 5, "solution": TWO_PLANNED}
-    assert document_of(carproof, "verify proof") == proved | {"obstacle": None, "reason": None, "by": None}
 
 
 def test_a_proof_about_which_z3_does_not_answer_is_undecided(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,7 +5,7 @@ import json
 import re
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from inspect import getdoc, isroutine, signature
 from pathlib import Path
@@ -152,53 +152,41 @@ def test_a_function_is_judged() -> None:
         carproof.conforms(carproof.plan, level="fast")  # type: ignore[arg-type]
 
 
-def of_command(path: str, option: str) -> object:
-    """The default of an option."""
+def of_command(words: str) -> object:
+    """The default of an option of a command, such as `query now`."""
+    *path, option = words.split()
     group: click.Command | None = command
-    for name in path.split():
+    for name in path:
         assert isinstance(group, click.Group)
         group = group.get_command(click.Context(group), name)
     assert group is not None
     return next(each.default for each in group.params if each.name == option)
 
 
-def of_function(function: Callable[..., object], parameter: str) -> object:
-    return signature(function).parameters[parameter].default
+@pytest.mark.parametrize(
+    ("parameter", "functions", "commands"),
+    [
+        ("now", (carproof.query, planning.query), ("query now",)),
+        ("now", (carproof.add, planning.add), ("add now",)),
+        ("limit", (carproof.optimum, searching.optimum, carproof.write_proof), ("optimum limit",)),
+        ("limit", (carproof.optimum, carproof.optimality_gap), ("gap limit",)),
+        ("planner", (carproof.plan, planning.plan), ()),
+        ("repair", (carproof.plan,), ("plan repair",)),
+        ("examples", (carproof.conforms, Conformance.conforms, Options), ("conform number",)),
+        ("level", (carproof.conforms,), ("conform level",)),
+        ("large", (carproof.conforms, Conformance.conforms), ("conform large",)),
+        ("processes", (carproof.optimum,), ("optimum processes",)),
+        ("after_goal", (carproof.instance_from_array, carproof.instance_from_networkx, carproof.read_movingai), ()),
+        ("after_goal", (carproof.Instance,), ("generate grid after_goal", "generate warehouse after_goal")),
+    ],
+)
+def test_defaults_are_the_same_in_python_on_the_command_line_and_in_ops(
+    parameter: str, functions: Sequence[Callable[..., object]], commands: Sequence[str]
+) -> None:
+    defaults = [signature(function).parameters[parameter].default for function in functions]
+    assert len({*defaults, *map(of_command, commands)}) == 1
 
 
-def test_defaults_are_the_same_in_python_on_the_command_line_and_in_ops() -> None:
-    same: list[tuple[object, ...]] = [
-        (of_function(carproof.query, "now"), of_command("query", "now"), of_function(planning.query, "now")),
-        (of_function(carproof.add, "now"), of_command("add", "now"), of_function(planning.add, "now")),
-        (
-            of_function(carproof.optimum, "limit"),
-            of_command("optimum", "limit"),
-            of_function(searching.optimum, "limit"),
-            of_command("gap", "limit"),
-            of_function(carproof.optimality_gap, "limit"),
-            of_function(carproof.write_proof, "limit"),
-        ),
-        (of_command("plan", "planner"), carproof.Neighbourhood.name, of_function(carproof.add, "options").name),  # type: ignore[attr-defined]
-        (of_function(carproof.plan, "planner"), of_function(planning.plan, "planner")),
-        (of_function(carproof.plan, "repair"), of_command("plan", "repair")),
-        (of_function(carproof.conforms, "examples"), of_command("conform", "number"), Options().examples),
-        (of_function(carproof.conforms, "level"), of_command("conform", "level")),
-        (
-            of_function(carproof.conforms, "large"),
-            of_command("conform", "large"),
-            of_function(Conformance.conforms, "large"),
-        ),
-        (of_function(Conformance.conforms, "examples"), of_command("conform", "number")),
-        (of_function(carproof.optimum, "processes"), of_command("optimum", "processes")),
-        (
-            of_function(carproof.instance_from_array, "after_goal"),
-            of_function(carproof.instance_from_networkx, "after_goal"),
-            of_function(carproof.read_movingai, "after_goal"),
-        ),
-        (
-            INSTANCE.after_goal,
-            of_command("generate grid", "after_goal"),
-            of_command("generate warehouse", "after_goal"),
-        ),
-    ]
-    assert [each for each in same if len({*each}) != 1] == []
+def test_the_planner_that_is_not_named_is_the_same_everywhere() -> None:
+    options = signature(carproof.add).parameters["options"].default
+    assert of_command("plan planner") == carproof.Neighbourhood.name == options.name

@@ -280,11 +280,9 @@ def test_exit_codes(carproof: Run, elsewhere: Path) -> None:
     (elsewhere / "row.json").write_bytes(write_instance(ROW))
     (elsewhere / "plans.json").write_bytes(write_solution(ONE_BY_ONE))
     (elsewhere / "trace.json").write_bytes(write_trace(LATE))
-    for name, resources in (("safe", ["b"]), ("wrong", ["c"])):
-        grants = {"format": "carproof-grants/1", "grants": [{"robot": "r1", "resources": resources}]}
+    for name, robot, resource in (("safe", "r1", "b"), ("wrong", "r1", "c"), ("blocking", "r2", "d")):
+        grants = {"format": "carproof-grants/1", "grants": [{"robot": robot, "resources": [resource]}]}
         (elsewhere / f"{name}.json").write_text(json.dumps(grants))
-    blocking = {"format": "carproof-grants/1", "grants": [{"robot": "r2", "resources": ["d"]}]}
-    (elsewhere / "blocking.json").write_text(json.dumps(blocking))
     command = "release row.json plans.json trace.json"
     asked = {"": 0, " --beyond": 0, " --beyond --states 1": 3, " --grants safe.json": 0, " --grants wrong.json": 2}
     asked |= {" --grants blocking.json": 1, " --grants blocking.json --states 1": 3, " --beyond --grants safe.json": 2}

@@ -1,9 +1,10 @@
 """The viewer's page in headless Chromium: it loads without errors, plays, and answers keys and clicks."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from pathlib import Path
+from typing import TypeAlias
 
 import pytest
 from selenium.webdriver import Chrome
@@ -34,28 +35,37 @@ def driver(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chrome]:
         yield started
 
 
-def opened(driver: Chrome, folder: Path, instance: Instance, solution: Solution, width: int = 1280) -> Page:
-    file = folder / "page.html"
-    file.write_bytes(view(instance, solution, title="town.json"))
-    return Page(driver, file, width)
+Case: TypeAlias = tuple[Instance, Solution]
+Opener: TypeAlias = Callable[..., Page]
 
 
 @pytest.fixture
-def collision(driver: Chrome, tmp_path: Path) -> Page:
+def opened(driver: Chrome, tmp_path: Path) -> Opener:
+    """Open the page of an instance and, if given, its plans."""
+
+    def open_page(*shown: object, width: int = 1280, trace: Trace | None = None) -> Page:
+        (tmp_path / "page.html").write_bytes(view(*shown, title="town.json", trace=trace))  # type: ignore[arg-type]
+        return Page(driver, tmp_path / "page.html", width)
+
+    return open_page
+
+
+@pytest.fixture
+def collision(opened: Opener) -> Page:
     """Robots r1 and r2 in a corridor; r1 runs into r2 at tick 1 in b and at tick 2 in c."""
     instance, solution = json.dumps(CORRIDOR).encode(), json.dumps(COLLIDING).encode()
-    return opened(driver, tmp_path, read_instance(instance), read_solution(solution))
+    return opened(read_instance(instance), read_solution(solution))
 
 
 @pytest.fixture(scope="module")
-def town() -> tuple[Instance, Solution]:
+def town() -> Case:
     """A hundred robots on 20 x 20 cells, some with room for two."""
     instance = grid_instance(Grid(), Fleet(robots=100), Traits(capacity=Range(1, 2), duration=Range(1, 2)))
     return instance, plan(instance, Carp())
 
 
 @pytest.fixture(scope="module")
-def warehouse() -> tuple[Instance, Solution]:
+def warehouse() -> Case:
     """450 robots on 120 x 30 cells, fifteen in a row, that drive a hundred cells to the right one behind the other."""
     resources = tuple(Resource(f"{x},{y}", x=x, y=y) for y in range(30) for x in range(120))
     edges = tuple((f"{x},{y}", f"{x + 1},{y}") for y in range(30) for x in range(119))
@@ -68,7 +78,7 @@ def warehouse() -> tuple[Instance, Solution]:
     return Instance(ResourceGraph(resources, edges), robots), Solution(plans, tuple(each.id for each in robots))
 
 
-def rotation() -> tuple[Instance, Solution]:
+def rotation() -> Case:
     """Four robots on 2 x 2 cells; each enters the place of the next at tick 1."""
     ring = ((0, 0), (1, 0), (1, 1), (0, 1))
     resources = tuple(Resource(f"{x}{y}", x=x, y=y) for x, y in ring)
@@ -88,20 +98,16 @@ def requests(driver: Chrome) -> list[str]:
     return [each["params"]["request"]["url"] for each in events if each["method"] == "Network.requestWillBeSent"]
 
 
-def test_the_page_loads_without_complaint_and_asks_for_nothing_else(
-    driver: Chrome, tmp_path: Path, town: tuple[Instance, Solution]
-) -> None:
-    shown = opened(driver, tmp_path, *town)
+def test_the_page_loads_without_complaint_and_asks_for_nothing_else(opened: Opener, town: Case) -> None:
+    shown = opened(*town)
     assert shown.text("verdict") == "✓ no rule is broken"
     assert shown.count("#robots button") == 100
-    assert logged(driver, "browser") == []
-    assert {url.partition(":")[0] for url in requests(driver)} <= {"file", "data"}
+    assert logged(shown.driver, "browser") == []
+    assert {url.partition(":")[0] for url in requests(shown.driver)} <= {"file", "data"}
 
 
-def test_the_page_and_the_still_agree_at_every_tick(
-    driver: Chrome, tmp_path: Path, town: tuple[Instance, Solution]
-) -> None:
-    shown = opened(driver, tmp_path, *town)
+def test_the_page_and_the_still_agree_at_every_tick(opened: Opener, town: Case) -> None:
+    shown = opened(*town)
     for tick in (0, 1, 7, 15):
         still = picture_of(view_map(*town, at=tick, title="town").decode())
         assert shown.robots() == {each.findtext(f"{SVG}title"): placed(each.get("transform", "")) for each in still[-1]}
@@ -110,20 +116,18 @@ def test_the_page_and_the_still_agree_at_every_tick(
             shown.script("document.getElementById('forward').click()")
 
 
-def test_the_page_and_the_still_agree_on_a_plant(driver: Chrome, tmp_path: Path) -> None:
-    shown = opened(driver, tmp_path, *plant())
+def test_the_page_and_the_still_agree_on_a_plant(opened: Opener) -> None:
+    shown = opened(*plant())
     for tick in range(14):
         still = picture_of(view_map(*plant(), at=tick, title="plant").decode())
         (drawn,) = shown.robots().values()
         assert drawn == pytest.approx(placed(still[-1][0].get("transform", "")), abs=1)
         shown.script("document.getElementById('forward').click()")
-    assert logged(driver, "browser") == []
+    assert logged(shown.driver, "browser") == []
 
 
-def test_names_of_a_plant_are_readable_where_it_is_drawn_small_and_none_is_over_another(
-    driver: Chrome, tmp_path: Path
-) -> None:
-    shown = opened(driver, tmp_path, *row_of_bays(24))
+def test_names_of_a_plant_are_readable_where_it_is_drawn_small_and_none_is_over_another(opened: Opener) -> None:
+    shown = opened(*row_of_bays(24))
     boxes = shown.script(
         "return [...document.querySelectorAll('.point-name')].map((name) => name.getBoundingClientRect())"
         ".map((box) => [box.left, box.right, box.height])"
@@ -133,7 +137,7 @@ def test_names_of_a_plant_are_readable_where_it_is_drawn_small_and_none_is_over_
     assert all(one[1] <= other[0] for one, other in pairwise(sorted(boxes)))
 
 
-def row_of_bays(count: int) -> tuple[Instance, Solution]:
+def row_of_bays(count: int) -> Case:
     """Points in a row, with a lane from each to the next."""
     nodes = [{"id": f"bay-{number}", "x": 4 * number, "y": number % 2} for number in range(count)]
     links = [{"source": f"bay-{number}", "target": f"bay-{number + 1}"} for number in range(count - 1)]
@@ -151,10 +155,8 @@ def slider(shown: Page) -> int:
     return int(shown.script("return document.getElementById('slider').value"))
 
 
-def test_it_plays_and_pauses_by_key_and_robots_move_between_resources(
-    driver: Chrome, tmp_path: Path, town: tuple[Instance, Solution]
-) -> None:
-    shown = opened(driver, tmp_path, *town)
+def test_it_plays_and_pauses_by_key_and_robots_move_between_resources(opened: Opener, town: Case) -> None:
+    shown = opened(*town)
     before = shown.robots()
     shown.press(Keys.SPACE)
     assert shown.text("play") == "Pause"
@@ -166,8 +168,8 @@ def test_it_plays_and_pauses_by_key_and_robots_move_between_resources(
     assert (slider(shown), shown.robots()) == stopped
 
 
-def test_it_stops_at_the_end_and_begins_anew(driver: Chrome, tmp_path: Path, town: tuple[Instance, Solution]) -> None:
-    shown = opened(driver, tmp_path, *town)
+def test_it_stops_at_the_end_and_begins_anew(opened: Opener, town: Case) -> None:
+    shown = opened(*town)
     shown.press("+", "+", "+", "+", "+", "+", Keys.SPACE)
     wait_for(shown, "return document.getElementById('play').textContent === 'Play'")
     last = slider(shown)
@@ -200,11 +202,11 @@ def test_a_planted_collision_is_counted_listed_and_marked_at_its_tick(collision:
     assert collision.robots()
 
 
-def test_both_resources_of_an_exchange_are_red_while_robots_pass_each_other(driver: Chrome, tmp_path: Path) -> None:
+def test_both_resources_of_an_exchange_are_red_while_robots_pass_each_other(opened: Opener) -> None:
     resources, edges = (Resource("a", x=0, y=0), Resource("b", x=1, y=0)), (("a", "b"),)
     robots = (Robot("r1", "a", "b"), Robot("r2", "b", "a"))
     plans = tuple(Plan(each.id, (Visit(each.start, 0, 1), Visit(each.goal, 1, 2))) for each in robots)
-    shown = opened(driver, tmp_path, Instance(ResourceGraph(resources, edges), robots), Solution(plans, ("r1", "r2")))
+    shown = opened(Instance(ResourceGraph(resources, edges), robots), Solution(plans, ("r1", "r2")))
 
     def red(time: float) -> object:
         shown.script(f"viewer.clock.set({time})")
@@ -251,10 +253,8 @@ def at_robot(shown: Page, name: str, *events: str, right: int = 0) -> None:
 VIEW = "[viewer.map.x, viewer.map.y, viewer.map.scale]"
 
 
-def test_choosing_a_robot_zooms_to_it_and_keeps_it_in_sight(
-    driver: Chrome, tmp_path: Path, warehouse: tuple[Instance, Solution]
-) -> None:
-    shown = opened(driver, tmp_path, *warehouse)
+def test_choosing_a_robot_zooms_to_it_and_keeps_it_in_sight(opened: Opener, warehouse: Case) -> None:
+    shown = opened(*warehouse)
     assert shown.number("viewer.map.isWhole")
     small = shown.number("viewer.map.scale")
     shown.script("document.querySelectorAll('#robots button')[7].click()")
@@ -269,10 +269,8 @@ def test_choosing_a_robot_zooms_to_it_and_keeps_it_in_sight(
     assert shown.number("viewer.map.scale") == small
 
 
-def test_the_map_is_moved_by_dragging_and_keys_and_zoomed_by_wheel_pinch_and_keys(
-    driver: Chrome, tmp_path: Path, warehouse: tuple[Instance, Solution]
-) -> None:
-    shown = opened(driver, tmp_path, *warehouse)
+def test_the_map_moves_by_dragging_and_keys_and_zooms_by_wheel_pinch_and_keys(opened: Opener, warehouse: Case) -> None:
+    shown = opened(*warehouse)
     views = [shown.number(VIEW)]
     shown.press("i", "i", "i")
     views.append(shown.number(VIEW))
@@ -289,14 +287,29 @@ def test_the_map_is_moved_by_dragging_and_keys_and_zoomed_by_wheel_pinch_and_key
     shown.script("viewer.map.view.dispatchEvent(new WheelEvent('wheel', { deltaY: -100, clientX: 300, clientY: 200 }))")
     wheeled = shown.number(VIEW)[2]
     assert wheeled > before
+    for kind, pointer, x in (("down", 1, 300), ("down", 2, 400), ("move", 2, 500), ("up", 1, 300), ("up", 2, 500)):
+        shown.script(
+            "viewer.map.view.dispatchEvent(new PointerEvent(arguments[0],"
+            "{ pointerId: arguments[1], clientX: arguments[2], clientY: 200 }))",
+            f"pointer{kind}",
+            pointer,
+            x,
+        )
+    assert shown.number(VIEW)[2] == pytest.approx(min(4, 2 * wheeled))
 
 
-def test_robots_are_where_the_trace_says_and_rings_where_they_were_to_be(driver: Chrome, tmp_path: Path) -> None:
+def test_an_instance_alone_is_a_map_without_a_clock(opened: Opener, town: Case) -> None:
+    shown = opened(town[0])
+    assert shown.text("verdict") == "an instance without plans"
+    assert shown.script("return document.querySelector('footer').clientHeight") == 0
+    assert shown.count("#robots button") == 100
+    assert logged(shown.driver, "browser") == []
+
+
+def test_robots_are_where_the_trace_says_and_rings_where_they_were_to_be(opened: Opener) -> None:
     instance, solution = rotation()
     happened = Trace(1, tuple(Plan(plan.robot, (Visit(plan.visits[0].resource, 0, None),)) for plan in solution.plans))
-    file = tmp_path / "page.html"
-    file.write_bytes(view(instance, solution, title="town.json", trace=happened))
-    shown = Page(driver, file)
+    shown = opened(instance, solution, trace=happened)
     start = shown.robots()
     shown.press(Keys.ARROW_RIGHT, "l")
     assert shown.robots() == start
@@ -304,15 +317,12 @@ def test_robots_are_where_the_trace_says_and_rings_where_they_were_to_be(driver:
     places = [list(pose[:2]) for pose in start.values()]
     assert ghosts == [*places[1:], places[0]]
     assert "4 of them in a circle" in shown.text("about")
-    assert logged(driver, "browser") == []
+    assert logged(shown.driver, "browser") == []
 
 
 @pytest.mark.ci
-@pytest.mark.parametrize("width", [1280, 380])
-def test_450_robots_play_at_30_frames_a_second_without_a_graphics_card(
-    driver: Chrome, tmp_path: Path, warehouse: tuple[Instance, Solution], width: int
-) -> None:
-    shown = opened(driver, tmp_path, *warehouse, width=width)
+def test_450_robots_play_at_30_frames_a_second_on_the_processor(opened: Opener, warehouse: Case) -> None:
+    shown = opened(*warehouse)
     shown.press(Keys.SPACE)
     assert shown.text("play") == "Pause"
     assert seconds_of_a_frame(shown) <= 1 / FEWEST_FRAMES
@@ -357,17 +367,15 @@ def test_robots_are_found_by_name(collision: Page) -> None:
     assert collision.text("play") == "Play"
 
 
-def test_hostile_ids_are_only_text(driver: Chrome, tmp_path: Path) -> None:
+def test_hostile_ids_are_only_text(opened: Opener) -> None:
     instance = read_instance(json.dumps(CORRIDOR).encode())
     instance = Instance(instance.graph, (Robot(HOSTILE, "a", "b"),))
-    shown = opened(driver, tmp_path, instance, Solution((Plan(HOSTILE, (Visit("b", 0, 1),)),), (HOSTILE,)))
+    shown = opened(instance, Solution((Plan(HOSTILE, (Visit("b", 0, 1),)),), (HOSTILE,)))
     assert "<script>alert('1')" in shown.text("robots")
-    assert logged(driver, "browser") == []
+    assert logged(shown.driver, "browser") == []
 
 
-def test_a_narrow_screen_needs_no_scrolling_sideways(
-    driver: Chrome, tmp_path: Path, town: tuple[Instance, Solution]
-) -> None:
-    shown = opened(driver, tmp_path, *town, width=380)
+def test_a_narrow_screen_needs_no_scrolling_sideways(opened: Opener, town: Case) -> None:
+    shown = opened(*town, width=380)
     assert shown.script("return document.documentElement.scrollWidth") <= 380
-    assert logged(driver, "browser") == []
+    assert logged(shown.driver, "browser") == []
