@@ -121,7 +121,7 @@ def test_a_failure_is_saved_as_a_vector_that_asks_it_again(tmp_path: Path) -> No
 
 
 def test_the_same_seed_asks_the_same_cases() -> None:
-    subjects = [Tampered(as_it_is) for _ in range(2)]
+    subjects = [Tampered(as_it_is, ("query", "plan")) for _ in range(2)]
     for subject in subjects:
         conform(subject, Options(Level.SOUND, examples=20, seed=5))
     assert subjects[0].cases == subjects[1].cases

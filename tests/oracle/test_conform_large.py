@@ -89,8 +89,8 @@ def test_who_gives_up_on_large_cases_has_shown_nothing_about_them() -> None:
     assert report.extent.robots <= 8
 
 
-@pytest.mark.parametrize("level", [Level.CONTEXT_OPTIMAL, Level.EXACT])
-def test_right_answers_to_large_cases_pass_at_every_level(level: Level) -> None:
+def test_right_answers_to_large_cases_pass_at_the_strictest_level() -> None:
+    level = Level.EXACT
     ops = ("plan", "query", "add", "polish", "check")
     ladder = [rung for rung in rungs(ops, level, 1, whole=False) if rung.robots == SIZES[2]]
     cases = [case for rung in ladder[:45] if (case := large_case(rung, Claims(), classical=False)) is not None]
