@@ -4,9 +4,9 @@ import pytest
 from tests import twin
 from tests.spec.making import instance, line, plan_of
 
-from carp_reference import time_expanded
+from carp_reference import plan, time_expanded
 from carp_reference.time_expanded import find_plan_by_ticks
-from carp_spec import Instance, Refusal, ResourceGraph, Robot
+from carp_spec import Instance, Refusal, ResourceGraph, Robot, TimeExpanded
 
 
 def test_a_table_that_memory_should_not_hold_is_refused() -> None:
@@ -21,6 +21,11 @@ def test_a_way_of_more_ticks_than_it_holds_is_refused(graph: ResourceGraph) -> N
     one = instance(graph, ("a", "a"))
     with pytest.raises(Refusal, match=r"robot r0 may be under way for 100000000\d ticks"):
         find_plan_by_ticks(one, (), "r0")
+
+
+def test_a_robot_whose_start_is_not_free_has_no_plan_and_the_rest_goes_on() -> None:
+    three = instance(line("abc"), ("a", "a"), ("a", "c"), ("c", "b"))
+    assert plan(three, TimeExpanded()).unplanned == ("r1",)
 
 
 def test_a_late_release_is_no_long_way() -> None:

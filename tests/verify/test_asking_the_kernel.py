@@ -17,6 +17,7 @@ from carp_verify.kernel import (
     ask,
     is_answer,
     program,
+    program_is_there,
     request,
     verify_proof,
     version,
@@ -118,6 +119,11 @@ def test_what_is_no_acceptance_is_a_refusal_undecided_or_not_read() -> None:
         with pytest.raises(Refusal, match="carproof-kernel 7: no instance") as refused:
             KernelVerdict("7", "bad input", "$.x", rule, "no instance").accepted  # noqa: B018
         assert (refused.value.kind, refused.value.path, refused.value.rule) == ("document", "$.x", shown)
+
+
+def test_a_kernel_is_there_where_its_program_was_found() -> None:
+    assert program_is_there("/bin/carproof-kernel")
+    assert not program_is_there(None)
 
 
 def test_the_program_named_goes_before_the_one_built_and_this_before_the_one_on_the_path(

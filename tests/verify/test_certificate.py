@@ -120,6 +120,46 @@ def test_a_robot_in_a_resource_for_ever_is_met_at_any_later_tick() -> None:
     assert breach.tick == 10**12
 
 
+@pytest.mark.parametrize(
+    ("plans", "rule"),
+    [
+        ((Plan("r1", (Visit("a", 0, 1), Visit("c", 1, 2))),), "plan/move"),
+        ((EASTWARD, EASTWARD), "solution/covers"),
+        ((EASTWARD, Plan("r9", (Visit("a", 7, 8),))), "solution/covers"),
+    ],
+)
+def test_teleports_second_plans_and_strangers_are_refused(plans: tuple[Plan, ...], rule: str) -> None:
+    others = tuple(robot for robot in ("r1", "r2", "r3") if robot not in {plan.robot for plan in plans})
+    order = tuple(dict.fromkeys(plan.robot for plan in plans))
+    certified = certify(INSTANCE, Solution(plans, order, others))
+    assert not certified.accepted
+    assert [violation.rule for violation in certified.violations] == [rule]
+    assert (certified.resources, certified.pairs, certified.breaches) == (0, 0, ())
+
+
+def test_plans_that_follow_each_other_are_certified() -> None:
+    behind = Plan("r2", (Visit("c", 0, 1),))
+    assert certify_together(INSTANCE, (EASTWARD, behind)).accepted
+
+
+def test_an_exchange_is_refused_with_rule_robots_and_tick() -> None:
+    meeting = Plan("r2", (Visit("b", 0, 1), Visit("a", 1, 2)))
+    (breach,) = certify_together(INSTANCE, (EASTWARD, meeting)).breaches
+    assert (breach.rule, set(breach.robots), breach.tick) == ("joint/exchange", {"r1", "r2"}, 1)
+    assert "they exchange a and b" in str(breach)
+
+
+def test_a_robot_that_moves_both_ways_at_a_tick_exchanges_with_nobody() -> None:
+    alone = Plan("r1", (Visit("a", 0, 1), Visit("b", 1, 1), Visit("a", 1, 2)))
+    agree(INSTANCE, (alone,))
+
+
+def test_visits_to_no_resource_of_the_graph_are_none_of_its_business() -> None:
+    visits = (Visit("elsewhere", 0, 1), Visit("a", 1, 2), Visit("elsewhere", 2, 3), Visit("beyond", 3, 4))
+    certified = certify_together(INSTANCE, (Plan("r1", visits), Plan("r2", visits[::-1])))
+    assert (certified.resources, certified.pairs) == (1, 0)
+
+
 def write(folder: Path, *plans: Plan) -> tuple[Path, Path]:
     files = folder / "instance.json", folder / "solution.json"
     files[0].write_bytes(write_instance(INSTANCE))

@@ -13,7 +13,7 @@ from tests.spec.making import PARKED, SOLVED, VANISHING, plan_of, solution_of
 from tests.spec.strategies import FEWER, SIZES, solutions
 
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, Solution, judge
-from carp_spec.documents.decoding import has_format, has_shape, is_json, uncapitalized
+from carp_spec.documents.decoding import MOST_DIGITS, has_format, has_shape, is_json, uncapitalized
 from carp_spec.documents.instances import INSTANCE_FORMAT, InstanceDocument, read_instance, write_instance
 from carp_spec.documents.solutions import (
     SOLUTION_FORMAT,
@@ -242,6 +242,23 @@ def test_a_solution_followed_by_anything_is_refused() -> None:
     data = write_solution(solution_of(SOLVED))
     assert read_solution(data + b" \r\n\t") == solution_of(SOLVED)
     assert refusal(read_solution, data + b"x") == ("$", "document/json")
+
+
+@pytest.mark.parametrize(
+    ("name", "is_shown"),
+    [
+        ("trace/1", True),
+        ("a" * MOST_DIGITS, True),
+        ("", False),
+        ("two\nlines", False),
+        ("a" * (MOST_DIGITS + 1), False),
+    ],
+)
+def test_another_format_is_shown_if_it_fits_into_a_sentence(name: str, is_shown: bool) -> None:
+    with pytest.raises(Refusal) as caught:
+        read_instance(encode({"format": name}))
+    instead = f", and is {name}" if is_shown else ""
+    assert caught.value.message == f"the format must be carproof-instance/1{instead}"
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from tests.verify.tiny import TINY
 
 from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, total_cost, violations_of
-from carp_verify.optimum.encoding import Encoding, violated
+from carp_verify.optimum.encoding import Encoding, Exchange, violated
 from carp_verify.optimum.joint_search import least_total_cost
 from carproof.testing.strategies import PlannedInstance, instances, planned_instances
 
@@ -112,6 +112,23 @@ def test_a_robot_that_is_later_than_its_horizon_has_no_plan() -> None:
     encoding = Encoding(Instance(row(1, 1), (Robot("a", 0, 1), Robot("b", 1, 1))))
     encoding.grow_to([1, 0])
     assert encoding.plans([True] * (encoding.formula.variables + 1)) == [None, None]
+
+
+def test_the_time_is_looked_at_before_each_robot() -> None:
+    looks: list[int] = []
+    Encoding(Instance(row(1, 1), (Robot("a", 0, 1), Robot("b", 1, 0))), lambda: looks.append(1))
+    assert len(looks) == 2
+
+
+def test_a_conflict_is_named_by_its_tick_and_its_resources() -> None:
+    head_on = Instance(row(1, 1), (Robot("a", 0, 1), Robot("b", 1, 0)))
+    encoding = Encoding(head_on)
+    encoding.grow_to([0, 0])
+    solver = Solver(encoding.formula, Deadline(SECONDS).check)
+    assert solver.satisfiable([])
+    plans = [plan for plan in encoding.plans(solver.model()) if plan is not None]
+    solver.close()
+    assert violated(head_on, plans) == [Exchange(1, (0, 1), (1, 0))]
 
 
 def test_a_long_stay_needs_no_more_variables_than_a_short_one() -> None:

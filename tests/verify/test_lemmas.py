@@ -10,7 +10,7 @@ from tests.oracle.running import Run
 
 from carp_verify.lemmas import MODULES, engine, lemma_named
 from carp_verify.lemmas.engine import Formula, Lemma, Unproved, examine, prove, refute
-from carp_verify.lemmas.smt import Undecided, equal, find_model, integers
+from carp_verify.lemmas.smt import Undecided, equal, find_model, integers, negation
 from carp_verify.theorems import THEOREMS
 
 KERNEL = Path(__file__).parents[2] / "verify/kernel"
@@ -79,6 +79,14 @@ def test_a_lemma_is_checked_by_formulas_and_mutants_without_a_failure() -> None:
         assert report.checked is checked
         assert report.formulas == ("f",) * len(formulas[:1])
         assert [(name, shown.partition("=")[0]) for name, shown in report.refuted] == [("m", "a ")] * len(mutants[:1])
+
+
+def test_every_failure_is_reported() -> None:
+    a, b = integers("a b")
+    wrong, right = Formula("wrong", [a < b], negation(a < b)), Formula("right", [a < b], a <= b)
+    report = examine(Lemma("t", "s", (), lambda: iter([wrong]), lambda: iter([right])))
+    assert len(report.failures) == 2
+    assert not report.checked
 
 
 def test_the_theorems_are_those_that_coq_is_asked_about() -> None:
