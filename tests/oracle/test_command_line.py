@@ -3,6 +3,7 @@
 import json
 import os
 import pty
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -143,8 +144,9 @@ def test_a_narrow_terminal_shows_every_word_of_a_table_whole(
     carproof: Run, monkeypatch: pytest.MonkeyPatch, command: str
 ) -> None:
     wide = [word for word in carproof(command).stdout.split() if len(word) <= 20 and word.isalpha()]
-    monkeypatch.setenv("COLUMNS", "40")
-    narrow = carproof(command).stdout.replace(":", " ").split()
+    for name, value in (("COLUMNS", "40"), ("FORCE_COLOR", "1"), ("TERM", "xterm")):
+        monkeypatch.setenv(name, value)
+    narrow = re.sub(r"\x1b\[[0-9;]*m|:", " ", carproof(command).stdout).split()
     assert wide
     assert {*wide} <= {*narrow}
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 from tests.oracle.test_conform_judges import Tampered, as_it_is
-from tests.oracle.test_conform_one_answer import BEST, OPTIMUM, QUERY, UNDECIDED, goes
+from tests.oracle.test_conform_one_answer import BEST, OPTIMUM, PLAN, QUERY, UNDECIDED, goes
 
 from carp_spec import Instance, Solution
 from carproof.conform.answers import NotAsked, Reply, Skipped
@@ -15,7 +15,7 @@ from carproof.conform.findings import Category, Fault, Finding, wrong
 from carproof.conform.judging.gave_up import Effort
 from carproof.conform.judging.outcome import Outcome, ask
 from carproof.conform.levels import Level
-from carproof.conform.programs.function import Function
+from carproof.conform.programs.function import Function, by_documents
 from carproof.protocol.ops.planning import QueryDocument
 
 CRASH = Finding(Category.CRASH, "program/alive", "it is gone")
@@ -64,6 +64,13 @@ def test_a_reply_is_judged_or_counts_as_none(
     assert (found.case, without_seconds(found)) == (asked, expected)
 
 
+@pytest.mark.parametrize("seconds", [None, 0.5])
+def test_a_program_has_the_time_that_it_is_given(seconds: float | None) -> None:
+    subject = Answering(GOES)
+    ask(subject, QUERY, COMPLETE, seconds)
+    assert subject.given == [seconds]
+
+
 def test_a_failure_subsumes_another_of_its_rule_and_category_does_that_has_all_its_features() -> None:
     jumps, parked = wrong("plan/move", "it jumps"), replace(QUERY, instance=replace(QUERY.instance, after_goal="park"))
     simple, special = Outcome(QUERY, jumps), Outcome(parked, replace(jumps, message="it jumps too"))
@@ -82,6 +89,30 @@ def fault_of(planner: Any) -> Finding:  # noqa: ANN401 - anything that a person 
     with pytest.raises(Fault) as fault:
         Function(planner, "mine").ask(ALONE)
     return fault.value.finding
+
+
+def test_a_planner_of_documents_is_one_of_models() -> None:
+    written = {"format": "carproof-solution/1", "order": ["new"], "unplanned": []}
+    plans = [{"robot": "new", "visits": [list(stay) for stay in FIRST_GOES]}]
+    seen: list[dict[str, Any]] = []
+    planner = by_documents(lambda document: (seen.append(document), {**written, "plans": plans})[1])  # type: ignore[func-returns-value]
+    assert Function(planner, "mine").ask(ALONE) == PLANNED
+    assert [each["id"] for each in seen[0]["robots"]] == ["new"]
+    for returned, words in ((object(), "cannot be written as JSON"), ({**written, "plans": 1}, "the result of plan")):
+        finding = fault_of(by_documents(lambda _, returned=returned: returned))  # type: ignore[misc]
+        assert finding.rule == "program/result"
+        assert words in finding.message
+
+
+def test_a_function_is_asked_for_plans_by_a_planner_of_its_own_alone() -> None:
+    asked: list[Instance] = []
+    function = Function(lambda instance: (asked.append(instance), PLANNED)[1], "mine")  # type: ignore[func-returns-value]
+    assert (function.name, function.ops) == ("mine", ("plan",))
+    for other in (QUERY, PLAN, OPTIMUM):
+        assert function.ask(other) == NotAsked("it plans whole instances, by a planner of its own")
+    assert asked == []
+    assert function.ask(ALONE) == PLANNED
+    assert (asked, asked[0] is ALONE.instance) == ([ALONE.instance], False)
 
 
 def test_a_function_is_judged_by_the_document_of_its_solution() -> None:

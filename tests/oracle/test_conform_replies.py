@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from carproof.conform.answers import read_result, result_of
+from carproof.conform.answers import Skipped, read_result, result_of
 from carproof.conform.asking.smoke import FIRST_GOES
 from carproof.conform.findings import Category, Fault
 
@@ -41,6 +41,11 @@ def test_any_other_response_is_refused(line: bytes, category: Category, rule: st
     with pytest.raises(Fault) as refused:
         result_of(line, 1)
     assert (refused.value.finding.category, refused.value.finding.rule) == (category, rule)
+
+
+def test_a_response_may_skip_with_a_reason() -> None:
+    assert result_of(b'{"id": 1, "skipped": "no time"}', 1) == Skipped("no time")
+    assert result_of(b'{"id": 1, "skipped": ""}', 1) == Skipped("")
 
 
 def decoded(op: str, document: Any) -> Any:  # noqa: ANN401 - JSON, and a result

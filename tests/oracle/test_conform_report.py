@@ -2,13 +2,14 @@
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 
 import pytest
-from tests.oracle.test_conform_judges import Tampered, as_it_is
+from tests.oracle.test_conform_judges import Tampered, as_it_is, no_plan
 
 from carp_spec import Robot
 from carproof.conform import run
-from carproof.conform.answers import Reply
+from carproof.conform.answers import Reply, Skipped
 from carproof.conform.asking.smoke import EAST, row, smoke_cases
 from carproof.conform.asking.vector_cases import vector_cases
 from carproof.conform.cases import Case, Stage
@@ -33,6 +34,7 @@ from carproof.conform.judging.gave_up import Effort
 from carproof.conform.judging.outcome import Outcome
 from carproof.conform.levels import EXECUTOR_LEVELS, JUDGED_OPS, Level
 from carproof.conform.run import MOST_FAULTS, Options, Report, conform
+from carproof.formats.movingai_writer import is_classical
 from carproof.protocol.ops.planning import QueryDocument
 
 ALONE = row([EAST])
@@ -105,6 +107,11 @@ def test_counts_decide_whether_a_program_conforms(outcomes: Sequence[Outcome], c
     made = report(Level.CONTEXT_OPTIMAL, *outcomes)
     assert made.conforms is conforms
     assert made.reaches_level == (conforms is True or bool(made.findings))
+
+
+def test_answers_to_the_ops_of_the_level_are_counted() -> None:
+    outcomes = (tried(), tried("smoke", "plan"), failed("vectors"), tried(op="bound"), skipped(), not_asked())
+    assert report(Level.CONTEXT_OPTIMAL, *outcomes).tested == 3
 
 
 def test_an_interruption_leaves_undecided_what_is_not_wrong() -> None:
@@ -252,3 +259,45 @@ def test_a_kernel_that_decides_is_asked_about_fixed_and_random_cases(monkeypatch
         options = Options(examples=3, kernel=kernel)
         conform(subject, options)
         assert (Counter(asked), options.by) == (counts, by)
+
+
+@pytest.mark.usefixtures("few")
+def test_after_the_first_random_failure_the_smallest_is_looked_for_alone() -> None:
+    def fails(asked: Case, reply: Reply) -> Reply:
+        return no_plan(asked, reply) if asked.stage == "random" else reply
+
+    subject = Tampered(fails, ("query", "plan"))
+    made = conform(subject, Options(Level.COMPLETE, examples=40, seed=1, shrink_seconds=30))
+    assert made.smallest is not None
+    assert made.random["wrong answer"] == 1
+    assert [finding.rule for finding in made.findings] == ["query/complete"]
+    assert len(made.smallest.case.instance.robots) == 1
+
+
+@pytest.mark.usefixtures("few")
+def test_planners_of_whole_instances_are_asked_classical_ones_if_they_are_classical() -> None:
+    asked: list[Case] = []
+
+    class Silent(Tampered):
+        def ask(self, case: Case, seconds: float | None = None) -> Reply:
+            del seconds
+            asked.append(case)
+            return Skipped("no time")
+
+    for classical in (False, True):
+        subject = Silent(as_it_is)
+        subject.ops = ("plan",)
+        conform(subject, Options(examples=3, whole=True, classical=classical))
+    assert {(each.op, each.planner) for each in asked} == {("plan", None)}
+    half = len(asked) // 2
+    assert [each.classical for each in asked] == [False] * half + [True] * half
+    drawn = [each.instance for each in asked[half:] if each.stage == "random"]
+    assert all(is_classical(each) for each in drawn)
+
+
+@pytest.mark.usefixtures("few")
+def test_saved_cases_of_ops_that_are_offered_are_asked_before_all_others() -> None:
+    subject = Tampered(as_it_is, ("query",))
+    saved = [replace(each, stage="saved", robot="new", instance=ALONE) for each in (case(), case(op="plan"), case())]
+    made = conform(subject, Options(examples=0), saved=saved)
+    assert [each.case.stage for each in made.outcomes] == ["saved", "saved", *["smoke"] * 4, "vectors"]

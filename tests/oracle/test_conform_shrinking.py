@@ -1,6 +1,7 @@
 """The search for a random case that fails, and for a smaller one that fails in the same way."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 from hypothesis import strategies as st
@@ -81,6 +82,17 @@ def test_without_time_to_shrink_the_first_failure_stays() -> None:
     assert max(asked.robots[:-1]) < 3 < asked.robots[-1]
 
 
+def test_of_failures_that_hypothesis_takes_for_simpler_the_smallest_is_kept_and_of_equals_the_last() -> None:
+    asked = Asked(lambda robots: JUMPS if robots else None)
+    sized = FailureSearch(asked, 5.0, 60.0)
+    sized.run(st.integers(0, MOST).map(lambda number: case(MOST + 2 - number if number > 1 else 0)), 100, 1)
+    assert best(sized) == (1, JUMPS)
+    named = FailureSearch(lambda each, _: Outcome(each, JUMPS if int(each.name) >= 3 else None), 5.0, 60.0)
+    named.run(st.integers(0, 99).map(lambda number: replace(case(2), name=str(number))), 100, 1)
+    assert named.best is not None
+    assert named.best.case.name == "3"
+
+
 def test_smaller_failures_are_looked_for_until_the_time_is_over(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = Asked(lambda robots: JUMPS if robots >= 9 else None)
     monkeypatch.setattr(shrinking, "monotonic", lambda: 100.0 + 10 * len(asked.robots))
@@ -118,3 +130,19 @@ def test_one_that_takes_too_long_with_less_time_alone_is_given_up_for_the_first(
     made = search(asked)
     assert best(made) == (next(robots for robots in asked.robots if robots >= 9), NO_ANSWER)
     assert (asked.robots[-1] < 9, asked.limits[-1]) == (True, None)
+
+
+@pytest.mark.parametrize("other", [LATE, replace(LATE, category=Category.CRASH)])
+def test_one_that_fails_otherwise_with_all_the_time_is_given_up_for_the_first(other: Finding) -> None:
+    asked = Asked(
+        lambda robots: (
+            NO_ANSWER
+            if robots >= 9 or asked.limits[-1] is not None
+            else other
+            if robots < 9 < max(asked.robots)
+            else None
+        )
+    )
+    made = search(asked)
+    assert best(made)[1] == NO_ANSWER
+    assert best(made)[0] >= 9
