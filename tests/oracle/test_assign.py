@@ -79,6 +79,12 @@ def test_instance_and_plans_are_not_written_over_each_other(carproof: Run, elsew
     assert not (elsewhere / "same.json").exists()
 
 
+def test_a_stop_to_which_no_way_leads_changes_nothing() -> None:
+    blocked = {**HALL, "graph": {**HALL["graph"], "nodes": [*HALL["graph"]["nodes"], {"id": "far"}]}}
+    result = asked("assign", instance=blocked, solution=PLANS, robot="r2", now=4, stops=[{"resource": "far"}])["result"]
+    assert (result["instance"], result["solution"]) == (None, PLANS)
+
+
 @pytest.mark.parametrize(
     ("robot", "stops", "now", "rule", "path"),
     [
