@@ -1,5 +1,6 @@
 """Documents: what is read is what was written, and every malformed document is refused with path and rule."""
 
+import gc
 import json
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -50,6 +51,16 @@ def refusal(read: Callable[[bytes], object], data: bytes) -> tuple[str, str]:
     assert caught.value.kind == "document"
     assert caught.value.message
     return caught.value.path, caught.value.rule
+
+
+@pytest.mark.parametrize("is_on", [True, False])
+def test_reading_leaves_the_collection_of_garbage_as_it_was(is_on: bool) -> None:
+    (gc.enable if is_on else gc.disable)()
+    try:
+        read_solution(write_solution(solution_of(SOLVED)))
+        assert gc.isenabled() is is_on
+    finally:
+        gc.enable()
 
 
 @FEWER
