@@ -8,6 +8,8 @@ from carp_spec import Instance, Solution
 
 Read: TypeAlias = Callable[[str, Instance, str], Solution]
 Write: TypeAlias = Callable[[Instance, Solution], str]
+LONGEST_HEAD = 10_000
+"""The characters of a line that names columns."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,3 +26,8 @@ class Adapter:
     read: Read
     write: Write
     agent: str | None = None
+
+
+def first_line(text: str) -> str:
+    """The first line, or as much of it as names columns: a document may be one line of millions of characters."""
+    return text[:LONGEST_HEAD].partition("\n")[0]

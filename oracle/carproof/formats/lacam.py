@@ -86,7 +86,7 @@ def write(instance: Instance, solution: Solution) -> str:
 ADAPTER = Adapter(
     "lacam",
     "a line t:(x,y),(x,y),... for each tick after solution=, as LaCAM and mapf-visualizer have it",
-    lambda text: _HEAD.search(text) is not None,
+    lambda text: "solution=" in text and _HEAD.search(text) is not None,
     read,
     write,
 )

@@ -165,7 +165,7 @@ def write(instance: Instance, solution: Solution) -> str:
 ADAPTER = Adapter(
     "libmultirobotplanning",
     "YAML with a schedule of x, y and t for each agent",
-    lambda text: _LOOKS.search(text) is not None,
+    lambda text: "schedule" in text and _LOOKS.search(text) is not None,
     read,
     write,
     "agent",

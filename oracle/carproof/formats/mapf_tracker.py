@@ -9,7 +9,7 @@ import re
 from itertools import pairwise
 
 from carp_spec import Instance, Refusal, RobotId, Solution
-from carproof.formats.adapter import Adapter
+from carproof.formats.adapter import Adapter, first_line
 from carproof.formats.walks import Cell, Walk, require_bounded, require_walks, solution_of_walks, walks_of_solution
 from carproof.input_rules import Code
 
@@ -54,7 +54,7 @@ def _names(head: str) -> list[str]:
 
 
 def _is_table(text: str) -> bool:
-    head = text.partition("\n")[0]
+    head = first_line(text)
     return any(column in head for column in _COLUMNS) and any(name in _COLUMNS for name in _names(head))
 
 

@@ -12,7 +12,7 @@ from io import StringIO
 
 from carp_spec import Instance, Plan, Refusal, ResourceId, RobotId, Solution, Visit
 from carp_spec.rule import DESIGN
-from carproof.formats.adapter import Adapter
+from carproof.formats.adapter import Adapter, first_line
 from carproof.formats.plans.checks import names_of, require_lawful
 from carproof.formats.plans.services import stops_in
 from carproof.formats.walks import require_bounded
@@ -78,7 +78,7 @@ def write(instance: Instance, solution: Solution) -> str:
 
 
 def _looks_like(text: str) -> bool:
-    return {*COLUMNS} <= {each.strip('" ') for each in text.removeprefix("\ufeff").partition("\n")[0].split(",")}
+    return {*COLUMNS} <= {each.strip('" ') for each in first_line(text).removeprefix("\ufeff").split(",")}
 
 
 ADAPTER = Adapter("csv", f"a table with the columns {', '.join(COLUMNS)}, for every instance", _looks_like, read, write)
