@@ -30,6 +30,8 @@ ENOUGH = 4
 """The annealing begins if CARP has left this many times its own time, as it takes up the plans again."""
 AGAIN = 2
 """With less, passes and settling follow if CARP has left this many times its own time."""
+HARDLY_ANY = 1e-3
+"""The seconds that are left where looking at the instance took all."""
 SORTING = 4
 """The shortest ways of all robots are looked up if that takes at most one of this many parts of the time."""
 
@@ -48,11 +50,14 @@ def plan_within(
 
     The time to `finish` with the solution, which the caller does, is part of the seconds. So is that of compiling.
     """
+    started = clock()
     require_instance(instance)
     require_polish_options(iterations, seconds, seed)
-    if iterations is None and seconds is None:
+    if seconds is None and iterations is None:
         seconds = SECONDS
-    started = clock()
+    begun, started = started, clock()
+    if seconds is not None:
+        seconds = max(seconds - (started - begun), HARDLY_ANY)
     found = plan_crowd(
         instance, iterations=iterations, seconds=seconds, seed=seed, advance=advance, clock=clock, finish=finish
     )

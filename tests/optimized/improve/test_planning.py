@@ -9,7 +9,7 @@ from hypothesis import given
 
 from carp_optimized.improve import planning
 from carp_optimized.improve.crowds import is_stepwise
-from carp_optimized.improve.lacam import plans_by_steps
+from carp_optimized.improve.lacam import Search, plans_by_steps
 from carp_optimized.improve.planning import improve_crowd
 from carp_spec import AfterGoal, Instance, RobotId, Solution, judge, total_cost
 from carproof.generate import Fleet, Grid, grid_instance
@@ -100,6 +100,13 @@ def test_the_nearest_robots_are_planned_where_there_is_no_time_for_all() -> None
         return abs((start.x or 0) - (goal.x or 0)) + abs((start.y or 0) - (goal.y or 0))
 
     assert max(way(plan.robot) for plan in found.plans) < min(sorted(map(way, found.unplanned))[len(found.plans) :])
+
+
+def test_time_is_left_to_plan_some_robots_where_lacam_does_not_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Search, "go", lambda *_: None)
+    ticks = iter(range(10**9))
+    found = plan_crowd(crowd(60, 1200), iterations=None, seconds=3000, clock=lambda: float(next(ticks)))
+    assert len(found.plans) > 50
 
 
 def test_given_plans_get_better_within_the_time() -> None:
