@@ -47,13 +47,8 @@ class Family:
 
 
 FAMILIES = (
-    Family(6, FULL, 20, "vanish"),
-    Family(8, FULL, 16, "vanish"),
-    Family(8, FULL, 16, "park"),
-    Family(8, SPARSE, 10, "vanish"),
     Family(8, SPARSE, 10, "park"),
     Family(5, FULL, 6, "vanish", Range(1, 3)),
-    Family(8, FULL, 24, "vanish"),
     Family(8, FULL, 24, "park"),
     Family(20, FULL, 60, "vanish"),
     Family(20, FULL, 60, "park"),

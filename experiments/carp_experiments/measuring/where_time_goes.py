@@ -74,8 +74,7 @@ def shares_of(profile: Profile) -> dict[str, str]:
         if name in spent:
             spent[name] += cumulative
     whole = stats.total_tt  # type: ignore[attr-defined]
-    shares = {phase: f"{100 * spent[name] / whole:.0f} %" for phase, name in PHASES.items()}
-    return shares | {"all else": f"{100 * max(whole - sum(spent.values()), 0) / whole:.0f} %"}
+    return {phase: f"{100 * spent[name] / whole:.0f} %" for phase, name in PHASES.items()}
 
 
 def profile_table() -> str:

@@ -46,7 +46,7 @@ At least one of so many parts of the time is left for it, and at most another.
 REPAIR = 2
 """A repair takes at most one of this many parts of the time."""
 BRIEF = 0.01
-"""The seconds of an annealing if what comes before took the time."""
+"""The seconds of a search if what comes before took the time."""
 
 
 def polish_or_anneal(

@@ -14,7 +14,7 @@ import numpy as np
 
 import carp_optimized
 from carp_optimized.fleet import PlannedFleet
-from carp_optimized.improve.annealing import anneal
+from carp_optimized.improve.annealing import BRIEF, anneal
 from carp_optimized.improve.crowds import crowd_of, near
 from carp_optimized.improve.holding import plan_holding_starts
 from carp_optimized.improve.planning import Found, plan_crowd, time_of_visit
@@ -30,8 +30,6 @@ ENOUGH = 4
 """The annealing begins if CARP has left this many times its own time, as it takes up the plans again."""
 AGAIN = 2
 """With less, passes and settling follow if CARP has left this many times its own time."""
-HARDLY_ANY = 1e-3
-"""The seconds that are left where looking at the instance took all."""
 SORTING = 4
 """The shortest ways of all robots are looked up if that takes at most one of this many parts of the time."""
 
@@ -57,7 +55,7 @@ def plan_within(
         seconds = SECONDS
     begun, started = started, clock()
     if seconds is not None:
-        seconds = max(seconds - (started - begun), HARDLY_ANY)
+        seconds = max(seconds - (started - begun), BRIEF)
     found = plan_crowd(
         instance, iterations=iterations, seconds=seconds, seed=seed, advance=advance, clock=clock, finish=finish
     )

@@ -2,7 +2,8 @@
 
 First come plans by LaCAM, and by prioritized planning with the shortest way first: robots that arrive early park early,
 and those that come later go around them. Who finds no path takes a shortest way, and those that it meets are planned
-again. Where that leads nowhere, LaCAM follows guides. Then rounds improve the best ones. They may raise the sum for a
+again. Where that leads nowhere, LaCAM follows guides; where that does not end, as many robots as possible are planned
+one after the other. Then rounds improve the best ones. They may raise the sum for a
 while (simulated annealing, Kirkpatrick et al. 1983): on average by a share of a robot's mean delay, which falls to 0 as
 the cube of what is left of the cycle. There are several cycles, each from the best paths so far. Where there is time
 for many rounds, each path is one of those that arrive equally early.
