@@ -1,7 +1,6 @@
 """A fleet that stays up: plans are made and robots added one after the other, on arrays that persist."""
 
 from collections.abc import Callable, Sequence
-from functools import partial
 from typing import TypeAlias, TypeVar
 
 import numpy as np
@@ -12,10 +11,10 @@ from carp_optimized.jit.compiling import RecordsExhausted, RoomExhausted, TicksE
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
 from carp_optimized.neighbourhood.adding import add_robot
-from carp_optimized.neighbourhood.polishing import NOW, QUEUED, TURN, play_rounds
+from carp_optimized.neighbourhood.polishing import FORGOTTEN, NOW, QUEUED, TURN, play_rounds
 from carp_optimized.neighbourhood.reuse import Queries, Reuse
 from carp_optimized.queries.over_stops import STANDING
-from carp_optimized.recording import copied, enlarged, read_plan, write_plan
+from carp_optimized.recording import enlarged, read_plan, write_plan
 from carp_optimized.state import encoding
 from carp_optimized.state.arrays import (
     ASKED,
@@ -26,6 +25,7 @@ from carp_optimized.state.arrays import (
     PREFIX,
     SHARED,
     TOO_FAR,
+    UNASKED,
     UNCHANGED,
     UNKNOWN,
     UNREACHABLE,
@@ -81,6 +81,7 @@ class PlannedFleet:
         self._noted = self._records
         self._plans: dict[int, Plan] = {}
         self._many = MANY
+        self._forgotten = 0
         self._options: Neighbourhood | None = None
         self._reuse: Reuse | None = None
 
@@ -430,7 +431,7 @@ class PlannedFleet:
         robots, plans = np.zeros(count, np.int32), np.full(count, NONE, np.int32)
 
         def rounds() -> int:
-            waiting, found = np.arange(count, dtype=np.int32), np.full(count, passes.UNASKED, np.int32)
+            waiting, found = np.arange(count, dtype=np.int32), np.full(count, UNASKED, np.int32)
             return passes.greedy(self._native, waiting, found, robots, plans, self.reuse.unchanged)
 
         planned = self._call(rounds)
@@ -499,20 +500,14 @@ class PlannedFleet:
     def polishing(self, seed: int, now: int = 0) -> Native[Polish]:
         """The arrays for polishing this fleet at a tick, from the plans that it has."""
         encoding.refuse_tick("$.now", now)
-
-        def find_alone(robot: int) -> int:  # another `_empty`, if there was too little room
-            return passes.find_one(self._empty, robot, int(self._records[robot]) if now > 0 else NONE, now)
-
-        able = sorted(self._index.values() if now == 0 else self.order)
-        found = np.full(len(self._records), NONE, np.int32)
-        for robot in able:
-            found[robot] = self._call(partial(find_alone, robot))
-        has_path = found != NONE
-        least = np.zeros(found.size, np.int64)
-        least[has_path] = [self._cost(found[robot : robot + 1]) for robot in np.flatnonzero(has_path)]
-        polish = encoding.no_polish(copied(self._state.records), found, least, self._state.graph.duration.size)
+        able = np.array(sorted(self._index.values() if now == 0 else self.order), np.int32)
+        followed = self._records if now > 0 else np.full(len(self._records), NONE, np.int32)
+        costs = np.full(len(self._records), NONE, np.int64)
+        self._call(lambda: passes.cost_each_alone(self._empty, able, followed, now, costs))
+        polish = encoding.no_polish(costs, self._state.graph.duration.size)
         polish.stream[0] = seed
         polish.counts[NOW] = now
+        polish.counts[FORGOTTEN] = self._forgotten
         return Native(polish)
 
     def polish(self, polishing: Native[Polish], rounds: int) -> int:
@@ -520,12 +515,17 @@ class PlannedFleet:
         self.forget_old_records()
         work = polishing.fields
         size, turn, stream = self._order.size, int(work.counts[TURN]), int(work.stream[0])
+        if work.counts[FORGOTTEN] != self._forgotten:
+            work.alone[work.alone != NONE] = UNASKED
+            work.counts[FORGOTTEN] = self._forgotten
+        alone = work.alone.copy()
 
         def attempt() -> int:
+            work.alone[:] = alone
             work.queue[:size] = self._order
             work.plans[:] = self._records
             work.counts[QUEUED], work.counts[TURN], work.stream[0] = size, turn, stream
-            return play_rounds(self._native, polishing, rounds)
+            return play_rounds(self._native, polishing, self._empty, rounds)
 
         played = self._call(attempt)
         order = work.queue[: work.counts[QUEUED]].copy()
@@ -660,6 +660,7 @@ class PlannedFleet:
 
     def forget(self) -> None:
         """Keep only the records of the plans held."""
+        self._forgotten += 1
         used = self._state.records.used
         kept = np.sort(self._records[self._order])
         number = np.full(int(used[0]) + 1, NONE, np.int32)  # the last is that of no record

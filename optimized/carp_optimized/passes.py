@@ -1,17 +1,15 @@
 """Prioritized planning of many robots: CARP, and greedy best-first."""
 
 from carp_optimized.jit.compiling import RecordsExhausted, TicksExhausted, entry
-from carp_optimized.jit.kinds import Ints
+from carp_optimized.jit.kinds import Ints, Longs
 from carp_optimized.jit.references import Native
 from carp_optimized.queries.guides import guide_of, guide_slot
 from carp_optimized.queries.over_stops import shortest_of
-from carp_optimized.queries.search import find_any_plan, find_plan, find_plan_only
+from carp_optimized.queries.search import cost_alone, find_any_plan, find_plan, find_plan_only
 from carp_optimized.queries.windows import plan_fits, reserve, withdraw
-from carp_optimized.state.arrays import NEVER, NONE, TOO_FAR, UNCHANGED, UNKNOWN, State
+from carp_optimized.state.arrays import NEVER, NONE, TOO_FAR, UNASKED, UNCHANGED, UNKNOWN, State
 from carp_optimized.state.natives import state_at
 from carp_optimized.state.records import close_record, cost_of, start_record
-
-UNASKED = -2
 
 
 @entry
@@ -19,6 +17,21 @@ def find_one(native: Native[State], robot: int, before: int, now: int) -> int:
     """The record of one robot's plan against the reservations, or `NONE`; nothing is reserved."""
     state = state_at(native)
     return find_plan_only(state, robot, before, now, NEVER)
+
+
+@entry
+def cost_each_alone(empty: Native[State], robots: Ints, before: Ints, now: int, costs: Longs) -> None:
+    """The costs of the plans that robots have where nothing is reserved, by robot; `NONE` for one without.
+
+    `before` are the plans followed until now, by robot.
+    """
+    state = state_at(empty)
+    used, visits, expansions = int(state.records.used[0]), int(state.records.used[1]), int(state.records.used[2])
+    for robot in robots:
+        costs[robot] = cost_alone(state, int(robot), int(before[robot]), now)
+        state.records.used[0] = used
+        state.records.used[1] = visits
+        state.records.used[2] = expansions
 
 
 @entry

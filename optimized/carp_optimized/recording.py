@@ -46,8 +46,3 @@ def _with_room(array: npt.NDArray[T], length: int) -> npt.NDArray[T]:
     larger = np.zeros((length, *array.shape[1:]), array.dtype)
     larger[: len(array)] = array
     return larger
-
-
-def copied(records: Records) -> Records:
-    """The same records, elsewhere."""
-    return Records._make(each.copy() for each in records)

@@ -114,9 +114,8 @@ def test_plans_alone_for_which_there_is_too_little_room_get_more(monkeypatch: py
     narrow.carp(range(12))
     assert enlargements
     before = len(enlargements)
-    polishing = narrow.polishing(1)
+    assert (narrow.polish(narrow.polishing(1), 50), narrow.plans) == made
     assert len(enlargements) > before
-    assert (narrow.polish(polishing, 50), narrow.plans) == made
 
 
 def test_robots_without_a_plan_get_one() -> None:

@@ -38,8 +38,8 @@ ENOUGH = 32
 """With fewer rounds a robot than this the raises are smaller by as much: there is no time to make up for them."""
 PARTS = 1 << 10
 """The time left is counted in parts of this."""
-ENDING, LEAST_ENDING, MOST_ENDING = 8, 32, 8
-"""At the end, plans are settled, which takes about so many times as long as to plan each robot without others.
+LEAST_ENDING, MOST_ENDING = 32, 8
+"""At the end, plans are settled, which takes about as long as a round for each robot.
 
 At least one of so many parts of the time is left for it, and at most another.
 """
@@ -103,9 +103,7 @@ def anneal(
     by_robot = {each.robot: each for each in whole.plans}
     fleet = PlannedFleet(instance)
     fleet.commit([by_robot[each] for each in whole.order])
-    begun = clock()
     polishing = fleet.polishing(seed, now)
-    alone = clock() - begun
     least = int(polishing.fields.least.sum())
     played = fleet.polish(polishing, 0)
     given = plans = fleet.plans
@@ -116,7 +114,7 @@ def anneal(
     from_given = True
     rounds = rounds_between_looks(fleet)
     seconds = max(seconds - (clock() - started), BRIEF)
-    ending = min(max(ENDING * alone, seconds / LEAST_ENDING), seconds / MOST_ENDING)
+    ending = seconds / LEAST_ENDING
     started = clock()
     while (spent := int(PARTS * (clock() - started) / (seconds - ending))) < PARTS:
         cycle, gone = divmod(cycles * spent, PARTS)
@@ -131,6 +129,7 @@ def anneal(
         polishing.fields.counts[CHANCE] = _chance(heated, len(instance.robots), expected, PARTS - gone)
         batch = fleet.polish(polishing, rounds)
         played += batch
+        ending = min(max(len(instance.robots) * (clock() - started) / max(played, 1), ending), seconds / MOST_ENDING)
         own = min(own, fleet.worth)
         if own < best:
             best, plans = own, fleet.plans

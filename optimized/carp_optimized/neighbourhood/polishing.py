@@ -19,11 +19,11 @@ from carp_optimized.neighbourhood.distances import Mean, distance_below, is_apar
 from carp_optimized.neighbourhood.orders import next_number
 from carp_optimized.queries.search import find_plan_only
 from carp_optimized.queries.windows import reserve, withdraw
-from carp_optimized.state.arrays import BLOCK, MOST_MEMBERS, MOST_TURNS, NEVER, NONE, Polish, Records, State
+from carp_optimized.state.arrays import BLOCK, MOST_MEMBERS, MOST_TURNS, NEVER, NONE, UNASKED, Polish, State
 from carp_optimized.state.natives import polish_at, state_at
 from carp_optimized.state.records import cost_of
 
-QUEUED, TURN, MARKS, CHANCE, MARKED, NOW = range(6)  # the counts
+QUEUED, TURN, MARKS, CHANCE, MARKED, NOW, FORGOTTEN = range(7)  # the counts
 SURE = 1 << 16  # a chance is in parts of this
 REPAIR, DELAYED, CONTESTED, NEAR = range(4)
 LEAST_MEMBERS = 4
@@ -34,12 +34,13 @@ AFTER = 1 << 40  # more than any tick
 
 
 @entry
-def play_rounds(native: Native[State], native_polish: Native[Polish], rounds: int) -> int:
+def play_rounds(native: Native[State], native_polish: Native[Polish], native_empty: Native[State], rounds: int) -> int:
     """Play that many rounds; returns how many were played before nothing was left to do."""
     state = state_at(native)
     polish = polish_at(native_polish)
+    empty = state_at(native_empty)
     for turn in range(rounds):
-        if not play_round(state, polish):
+        if not play_round(state, polish, empty):
             return turn
         polish.counts[TURN] += 1
     return rounds
@@ -52,7 +53,7 @@ def choice(stream: Numbers, among: int) -> int:
 
 
 @compiled
-def play_round(state: State, polish: Polish) -> bool:
+def play_round(state: State, polish: Polish, empty: State) -> bool:
     """Take out a neighbourhood, replan it and keep new plans that are not worse; `False` if there is nothing to do."""
     waiting = 0
     delay = 0
@@ -78,7 +79,7 @@ def play_round(state: State, polish: Polish) -> bool:
     elif kind == NEAR:
         candidates = rank_near(state, polish, pivot)
     else:
-        candidates = draw_in_way(state, polish, kind, pivot)
+        candidates = draw_in_way(state, polish, empty, kind, pivot)
     size = choose_members(polish, pivot, candidates)
     draw_order(polish, size, kind == REPAIR)
     replan_members(state, polish, size)
@@ -111,12 +112,12 @@ def pivot_of(state: State, polish: Polish, kind: int, weights: int) -> int:
 
 
 @compiled
-def draw_in_way(state: State, polish: Polish, kind: int, pivot: int) -> int:
+def draw_in_way(state: State, polish: Polish, empty: State, kind: int, pivot: int) -> int:
     """Draw all robots in the way of the pivot's plan, or of its plan alone (`polish/way`); how many there are."""
     if kind == DELAYED and choice(polish.stream, 2) == 1:
-        mark_spans(state, polish, state.records, int(polish.plans[pivot]))
+        mark_spans(state, polish, int(polish.plans[pivot]))
     else:
-        mark_spans(state, polish, polish.wishes, int(polish.alone[pivot]))
+        mark_spans(state, polish, plan_alone(polish, empty, pivot))
     count = 0
     is_told = note_robots_in_spans(state, polish)
     for robot in range(polish.plans.size):
@@ -131,6 +132,16 @@ def draw_in_way(state: State, polish: Polish, kind: int, pivot: int) -> int:
 
 
 @compiled
+def plan_alone(polish: Polish, empty: State, robot: int) -> int:
+    """The record of the plan that the robot has alone, made when it is first asked for: few are, in few rounds."""
+    if polish.alone[robot] == UNASKED:
+        now = int(polish.counts[NOW])
+        followed = int(polish.plans[robot]) if now > 0 else NONE
+        polish.alone[robot] = find_plan_only(empty, robot, followed, now, NEVER)
+    return int(polish.alone[robot])
+
+
+@compiled
 def swap_places(polish: Polish, one: int, other: int) -> None:
     """Swap two candidates."""
     robot = int(polish.candidates[one])
@@ -139,10 +150,11 @@ def swap_places(polish: Polish, one: int, other: int) -> None:
 
 
 @compiled
-def mark_spans(state: State, polish: Polish, records: Records, record: int) -> None:
+def mark_spans(state: State, polish: Polish, record: int) -> None:
     """Mark the resources that the plan visits, and those that a move leads to from there, with their spans."""
     polish.counts[MARKS] += 1
     polish.counts[MARKED] = 0
+    records = state.records
     first = int(records.visits_at[record])
     last = first + int(records.visits[record]) - 1
     for k in range(first, last + 1):

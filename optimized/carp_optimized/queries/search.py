@@ -22,7 +22,7 @@ from carp_optimized.state.arrays import (
     UNREACHABLE,
     State,
 )
-from carp_optimized.state.records import start_record, write_record
+from carp_optimized.state.records import cost_of, start_record, write_record
 
 EVERY = (1 << BLOCK) - 1
 LOW = (1 << 32) - 1
@@ -50,9 +50,7 @@ def find_plan_only(state: State, robot: int, before: int, now: int, latest: int)
 
 
 @compiled
-def find_any_plan(  # noqa: C901 - one case after the other
-    state: State, robot: int, before: int, now: int, behind: int, latest: int, is_noted: bool
-) -> int:
+def find_any_plan(state: State, robot: int, before: int, now: int, behind: int, latest: int, is_noted: bool) -> int:
     """The record of the robot's plan against the reservations, or `NONE`; `before` is the plan followed until now.
 
     A plan that is to be found must arrive by the tick `latest`.
@@ -61,30 +59,18 @@ def find_any_plan(  # noqa: C901 - one case after the other
     now are kept, and must fit the windows; a robot without a plan stands at its start since its release.
     """
     state.counters[ASKED] += 1
-    request = state.robots
-    resource = int(request.start[robot])
-    enter = int(request.release[robot])
-    history = 0
-    first = 0
-    if before != NONE:
-        records = state.records
-        if records.leave[before] <= now:
-            return before if plan_fits(state, before) else NONE
-        first = int(records.visits_at[before])
-        while history < records.visits[before] and records.enter[first + history] <= now:
-            history += 1
-        if history > 0:
-            resource = int(records.resource[first + history - 1])
-            enter = int(records.enter[first + history - 1])
-            for k in range(first, first + history - 1):
-                leave = int(records.enter[k + 1])
-                target = int(records.resource[k + 1])
-                if not fits(state, int(records.resource[k]), int(records.enter[k]), leave, target, behind):
-                    return NONE
-    ready = max(enter + int(request.pace[robot]) * int(state.graph.duration[resource]), now)
+    records = state.records
+    if has_ended(state, before, now):
+        return before if plan_fits(state, before) else NONE
+    first, past, resource, enter = under_way(state, robot, before, now)
+    for k in range(first, first + past):
+        leave = int(records.enter[k + 1])
+        target = int(records.resource[k + 1])
+        if not fits(state, int(records.resource[k]), int(records.enter[k]), leave, target, behind):
+            return NONE
+    ready = max(enter + int(state.robots.pace[robot]) * int(state.graph.duration[resource]), now)
     if not fits(state, resource, enter, ready, NONE, behind):
         return NONE
-    past = max(history - 1, 0)
     if has_stops(state, robot):
         if not (state.shortcuts and has_goal_alone_left(state, robot, first, past)):
             return find_over_stops(state, robot, first, past, resource, enter, ready, now, behind, latest)
@@ -101,6 +87,50 @@ def find_any_plan(  # noqa: C901 - one case after the other
     record = start_record(state, robot, first, past)
     write_record(state, record, int(state.search.goal[0]), expansions if is_noted else UNKNOWN)
     return record
+
+
+@compiled
+def has_ended(state: State, before: int, now: int) -> bool:
+    """Whether the robot has left by now, by the plan that it has followed, if there is one."""
+    return before != NONE and bool(state.records.leave[before] <= now)
+
+
+@compiled
+def under_way(state: State, robot: int, before: int, now: int) -> tuple[int, int, int, int]:
+    """Where the visits of its plan begin, how many are over by now, in which resource the robot is, and since when."""
+    records = state.records
+    if before != NONE:
+        first = int(records.visits_at[before])
+        entered = 0
+        while entered < records.visits[before] and records.enter[first + entered] <= now:
+            entered += 1
+        if entered > 0:
+            here = first + entered - 1
+            return first, entered - 1, int(records.resource[here]), int(records.enter[here])
+    return 0, 0, int(state.robots.start[robot]), int(state.robots.release[robot])
+
+
+@compiled
+def cost_alone(empty: State, robot: int, before: int, now: int) -> int:
+    """The cost of the robot's plan where nothing is reserved, or `NONE`; `before` is the plan followed until now.
+
+    With a goal alone left, h tells it: there it is exact. A robot in a goal that it may have to leave is left to the
+    search, and so is one that has left, or is too far from its goal.
+    """
+    first, past, resource, enter = under_way(empty, robot, before, now)
+    over_stops = has_stops(empty, robot)
+    if not has_ended(empty, before, now) and (not over_stops or has_goal_alone_left(empty, robot, first, past)):
+        if empty.parks and resource == empty.robots.goal[robot]:
+            return enter - int(empty.robots.release[robot])
+        destination = int(empty.robots.destination[robot])
+        slot = guide_of(empty, destination) if over_stops else guide_slot(empty, robot, resource)
+        ticks = int(empty.guides.ticks[slot][resource])
+        need = int(empty.robots.pace[robot]) * int(empty.graph.duration[resource])
+        arrival = max(enter, now - need) + ticks
+        if ticks > 0 and arrival <= LARGEST:
+            return arrival - int(empty.robots.release[robot])
+    record = find_plan_only(empty, robot, before, now, NEVER)
+    return NONE if record == NONE else cost_of(empty, record)
 
 
 @compiled

@@ -30,6 +30,7 @@ COUNTERS = 6
 PLANS = 62  # plans that a set of plans in 64 bits can hold; the bit PLANS stands for all others
 ANSWERS = 512
 NO_LIMIT = 1 << 62  # of a cost
+UNASKED = -2  # no record yet
 LATE = -2  # the plan of an answer is not below the limit
 
 MOST_MEMBERS = 10  # of a neighbourhood that is polished
@@ -329,9 +330,10 @@ class Polish(NamedTuple):
 
     `queue` holds the robots that have a plan in planning order, and `plans` the plans by robot; `counts` how many
     robots are in the queue, how many rounds are done, the generation of the marks, the chance that a round may
-    raise the total, how many resources are marked, and the tick by which what robots have done is kept. `stream[0]`
-    is the state of the random numbers. `alone[robot]` is the record, in `wishes`, of the plan that the robot has
-    alone, `NONE` if it has no path, and `least[robot]` is its cost. `has_path` says how many have one.
+    raise the total, how many resources are marked, the tick by which what robots have done is kept, and how often
+    records had been forgotten when `alone` was filled. `stream[0]` is the state of the random numbers. `alone[robot]`
+    is the record of the plan that the robot has alone, `UNASKED` at first, `NONE` if it has no path, and `least[robot]`
+    is its cost. `has_path` says how many have one.
     By resource: the span of a plan, `first` to `last`, where `mark` is the generation of the marks; `marked` lists
     these resources. The candidates are in order; those that are ranked have the rank whole + rest / ticks. By place in
     the neighbourhood: the members, their plans before and their new ones. `others` is scratch by robot.
@@ -341,7 +343,6 @@ class Polish(NamedTuple):
     plans: Ints
     counts: Longs
     stream: Numbers
-    wishes: Records
     alone: Ints
     least: Longs
     has_path: int

@@ -20,6 +20,7 @@ from carp_optimized.state.arrays import (
     NEVER,
     NONE,
     PLANS,
+    UNASKED,
     UNKNOWN,
     Answers,
     Ending,
@@ -579,8 +580,9 @@ def no_work(robots: int, members: int, sample: int) -> Work:
     )
 
 
-def no_polish(wishes: Records, alone: Ints, least: Longs, resources: int) -> Polish:
-    """Room to polish, with the plans that the robots have alone."""
+def no_polish(costs: Longs, resources: int) -> Polish:
+    """Room to polish, with the costs of the plans that the robots have alone, `NONE` for one without."""
+    has_path = costs != NONE
 
     def ints(size: int) -> Ints:
         return np.full(size, NONE, np.int32)
@@ -589,26 +591,25 @@ def no_polish(wishes: Records, alone: Ints, least: Longs, resources: int) -> Pol
         return np.zeros(size, np.int64)
 
     return Polish(
-        queue=ints(alone.size),
-        plans=ints(alone.size),
-        counts=longs(6),
+        queue=ints(costs.size),
+        plans=ints(costs.size),
+        counts=longs(7),
         stream=np.zeros(1, np.uint64),
-        wishes=wishes,
-        alone=alone,
-        least=least,
-        has_path=int((alone != NONE).sum()),
+        alone=np.where(has_path, np.int32(UNASKED), np.int32(NONE)),
+        least=np.maximum(costs, 0),
+        has_path=int(has_path.sum()),
         mark=longs(resources),
         first=ints(resources),
         last=ints(resources),
         marked=ints(resources),
-        candidates=ints(max(alone.size, MOST_TURNS)),
+        candidates=ints(max(costs.size, MOST_TURNS)),
         whole=longs(MOST_TURNS),
         rest=longs(MOST_TURNS),
         ticks=longs(MOST_TURNS),
         members=ints(MOST_TURNS),
         before=ints(MOST_TURNS),
         chosen=ints(MOST_TURNS),
-        others=ints(alone.size),
+        others=ints(costs.size),
     )
 
 
