@@ -118,6 +118,21 @@ def test_plans_alone_for_which_there_is_too_little_room_get_more(monkeypatch: py
     assert len(enlargements) > before
 
 
+def test_plans_alone_are_found_again_once_records_are_forgotten() -> None:
+    instance = grid_instance(Grid(8, 8, map=10), Fleet(robots=20, seed=1))
+    made = []
+    for forgets in (False, True):
+        fleet = carp_optimized.fleet.PlannedFleet(instance)
+        fleet.carp(range(20))
+        polishing = fleet.polishing(1)
+        for _ in range(20):
+            fleet.polish(polishing, 10)
+            if forgets:
+                fleet.forget()
+        made.append(fleet.plans)
+    assert made[0] == made[1]
+
+
 def test_robots_without_a_plan_get_one() -> None:
     instance = grid_instance(Grid(map=10), Fleet(seed=6))
     given = carp_optimized.plan(instance, Carp())
