@@ -2,7 +2,8 @@
 
 Robots drive on in their heading (F), turn (R, C) or wait (W), an action a tick. Each has one task at a time, a cell to
 be in; who is there gets the next of the list at that tick. A robot is planned when it gets a task, as `carproof.assign`
-does, to the cell in the heading in which it is there first if it is alone. Some planners then polish all plans.
+does, to the cell in the heading in which it is there first if it is alone. Some planners then polish all plans, once
+all tasks of a tick are given.
 
     python -m carp_experiments.beyond.league_tasks MAP AGENTS TASKS TICKS [PLANNER...]
 
@@ -18,7 +19,7 @@ from heapq import heappop, heappush
 from pathlib import Path
 from time import process_time
 
-from carp_spec import Instance, Neighbourhood, ResourceGraph, ResourceId, Robot, Stop, judge
+from carp_spec import Instance, Neighbourhood, Plan, ResourceGraph, ResourceId, Robot, Stop, judge
 from carproof import Fleet
 from carproof.formats.movingai import GridMap, movingai_instance, read_map
 from carproof.generate.grid import cell_id
@@ -32,7 +33,7 @@ PLANNERS = {
     "CARP, polished": (Neighbourhood(m=1), ROUNDS),
     "Proposed_4": (Neighbourhood(m=4), 0),
 }
-"""The planner of a new task, and how many rounds of polish follow it."""
+"""The planner of a new task, and how many rounds of polish it adds at the end of the tick."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +60,18 @@ def do_tasks(
     free_at = dict.fromkeys(here, 0)
     pause = dict.fromkeys(here, 1)
     queue = [(0, robot) for robot in here]
-    done, missed = [], 0
+    done, missed, planned, tick = [], 0, 0, 0
+
+    def follow(plans: Sequence[Plan]) -> None:
+        for plan in plans:
+            mover, last = int(plan.robot), plan.visits[-1]
+            here[mover], free_at[mover] = str(last.resource), last.enter
+            heappush(queue, (last.enter, mover))
+
     while queue:
+        if rounds * planned and queue[0][0] > tick:
+            follow(fleet.polish(iterations=rounds * planned).plans)
+            planned = 0
         tick, robot = heappop(queue)
         if tick > ticks or free_at[robot] != tick:
             continue  # the robot has another plan by now
@@ -75,11 +86,8 @@ def do_tasks(
             free_at[robot] = tick + pause[robot]
             heappush(queue, (free_at[robot], robot))
         pause[robot] = min(2 * pause[robot], LONGEST_PAUSE) if change.unplanned else 1
-        polished = fleet.polish(iterations=rounds).plans if rounds and change.plans else ()
-        for plan in (*change.plans, *polished):
-            mover, last = int(plan.robot), plan.visits[-1]
-            here[mover], free_at[mover] = str(last.resource), last.enter
-            heappush(queue, (last.enter, mover))
+        planned += bool(change.plans)
+        follow(change.plans)
     return Done(tuple(done), missed, fleet)
 
 
