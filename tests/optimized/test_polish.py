@@ -11,8 +11,24 @@ import carp_optimized.fleet
 import carp_reference
 from carp_optimized.recording import enlarged
 from carp_optimized.state import encoding
-from carp_optimized.state.arrays import Records
-from carp_spec import Carp, Instance, Refusal, Solution, check_update, judge, total_cost
+from carp_optimized.state.arrays import NONE, Records
+from carp_reference.problem import prepare
+from carp_reference.query import find_plan
+from carp_spec import (
+    Carp,
+    Instance,
+    Plan,
+    Refusal,
+    Resource,
+    ResourceGraph,
+    Robot,
+    Solution,
+    Visit,
+    check_update,
+    judge,
+    plan_cost,
+    total_cost,
+)
 from carproof import polish
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
@@ -64,6 +80,39 @@ def test_both_engines_keep_what_robots_have_done(
         annealed = polish(instance, before, seconds=0.01, seed=seed, now=now)
         assert judge(instance, annealed).valid
         assert not check_update(before.plans, annealed.plans, now)
+
+
+@given(planned_instances(replace(SIZES, robots=6, stops=3, service=5)), st.integers(0, 20))
+def test_plans_alone_cost_what_the_reference_finds(planned: PlannedInstance, now: int) -> None:
+    costs_alone(planned.instance, planned.solution, now)
+
+
+@pytest.mark.parametrize(
+    ("visits", "now", "cost"),
+    [
+        ((Visit("b", 0, 5), Visit("a", 5, 6)), 3, 3),  # it waits, and can go on from now
+        ((Visit("b", 0, 1), Visit("a", 1, 5), Visit("b", 5, 6), Visit("a", 6, 7)), 3, 4),  # too late to vanish at once
+    ],
+)
+def test_a_plan_alone_goes_on_from_now(visits: tuple[Visit, ...], now: int, cost: int) -> None:
+    graph = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),))
+    instance = Instance(graph, (Robot("r", "b", "a"),))
+    assert costs_alone(instance, Solution((Plan("r", visits),), ("r",)), now) == [cost]
+
+
+def costs_alone(instance: Instance, solution: Solution, now: int) -> list[int | None]:
+    """The costs of the plans that robots have alone, after a look at whether the two engines agree."""
+    plans = {plan.robot: plan for plan in solution.plans}
+    fleet = carp_optimized.fleet.PlannedFleet(instance)
+    fleet.commit([plans[each] for each in solution.order])
+    polishing = fleet.polishing(0, now).fields
+    problem = replace(prepare(instance, now), before=plans)
+    able = [robot.id if now == 0 or robot.id in plans else None for robot in instance.robots]
+    found = [None if robot is None else find_plan(problem, (), robot) for robot in able]
+    costs = [None if plan is None else plan_cost(instance, plan) for plan in found]
+    pairs = zip(polishing.least.tolist(), (polishing.alone != NONE).tolist(), strict=True)
+    assert [least if has_path else None for least, has_path in pairs] == costs
+    return costs
 
 
 MIXED = Fleet(robots=16, seed=3, distinct="none", release=Range(0, 9), pace=Range(1, 2))

@@ -114,12 +114,12 @@ def under_way(state: State, robot: int, before: int, now: int) -> tuple[int, int
 def cost_alone(empty: State, robot: int, before: int, now: int) -> int:
     """The cost of the robot's plan where nothing is reserved, or `NONE`; `before` is the plan followed until now.
 
-    With a goal alone left, h tells it: there it is exact. A robot in a goal that it may have to leave is left to the
-    search, and so is one that has left, or is too far from its goal.
+    With a goal alone left, h tells it: there it is exact. A robot in a goal in which it does not park is left to the
+    search, as it may have left, or may have to leave; and so is one that is too far from its goal.
     """
     first, past, resource, enter = under_way(empty, robot, before, now)
     over_stops = has_stops(empty, robot)
-    if not has_ended(empty, before, now) and (not over_stops or has_goal_alone_left(empty, robot, first, past)):
+    if not over_stops or has_goal_alone_left(empty, robot, first, past):
         if empty.parks and resource == empty.robots.goal[robot]:
             return enter - int(empty.robots.release[robot])
         destination = int(empty.robots.destination[robot])
