@@ -15,7 +15,7 @@ from carp_optimized.neighbourhood.polishing import FORGOTTEN, NOW, QUEUED, TURN,
 from carp_optimized.neighbourhood.reuse import Queries, Reuse
 from carp_optimized.queries.over_stops import STANDING
 from carp_optimized.recording import enlarged, read_plan, write_plan
-from carp_optimized.state import encoding
+from carp_optimized.state import encoding, limits, room
 from carp_optimized.state.arrays import (
     ASKED,
     BOUND,
@@ -64,7 +64,7 @@ class PlannedFleet:
         Raises `Refusal` if the instance has numbers that are too large.
         """
         require_instance(instance)
-        encoding.refuse_what_is_too_large(instance)
+        limits.refuse_what_is_too_large(instance)
         self.instance = instance
         self.reuse = reuse or Reuse()
         self._adding: Native[Adding] | None = None
@@ -118,7 +118,7 @@ class PlannedFleet:
 
     def require_robots(self, robots: Sequence[Robot]) -> None:
         """Raise `Refusal` unless the robots can be taken up."""
-        encoding.refuse_robots(robots, self._state.longest)
+        limits.refuse_robots(robots, self._state.longest)
 
     def enlist(self, robot: Robot) -> int:
         """Take up a robot of a new id, without a plan yet; its index, which no other has while it is there."""
@@ -243,7 +243,7 @@ class PlannedFleet:
 
     def find(self, robot: int, before: Plan | None, now: int) -> Plan | None:
         """The plan of a robot that is not in the fleet, which has followed the plan `before` until now."""
-        encoding.refuse_tick("$.now", now)
+        limits.refuse_tick("$.now", now)
         followed = NONE if before is None else self.record(before)
         record = self._call(lambda: passes.find_one(self._native, robot, followed, now))
         return None if record == NONE else self._plan(record)
@@ -478,7 +478,7 @@ class PlannedFleet:
         Orders are drawn for its `number` in the instance, which is its index unless given. A robot that is to be
         planned again has followed the plan `before` until now.
         """
-        encoding.refuse_tick("$.now", now)
+        limits.refuse_tick("$.now", now)
         self.forget_old_records()
         followed = NONE if before is None else self.record(before)
         order = np.empty(self._order.size + 1, np.int32)
@@ -499,12 +499,12 @@ class PlannedFleet:
 
     def polishing(self, seed: int, now: int = 0) -> Native[Polish]:
         """The arrays for polishing this fleet at a tick, from the plans that it has."""
-        encoding.refuse_tick("$.now", now)
+        limits.refuse_tick("$.now", now)
         able = np.array(sorted(self._index.values() if now == 0 else self.order), np.int32)
         followed = self._records if now > 0 else np.full(len(self._records), NONE, np.int32)
         costs = np.full(len(self._records), NONE, np.int64)
         self._call(lambda: passes.cost_each_alone(self._empty, able, followed, now, costs))
-        polish = encoding.no_polish(costs, self._state.graph.duration.size)
+        polish = room.no_polish(costs, self._state.graph.duration.size)
         polish.stream[0] = seed
         polish.counts[NOW] = now
         polish.counts[FORGOTTEN] = self._forgotten
@@ -552,8 +552,8 @@ class PlannedFleet:
         members, sample = min(options.m, len(self._records) + 1), options.sample or 0
         encoded = Options(members, sample, options.baseline, *kinds)
         if self._adding is None or self._adding.fields.options != encoded:
-            work = encoding.no_work(len(self._records), members, sample)
-            answers = encoding.no_answers(members, self._state.graph.duration.size)
+            work = room.no_work(len(self._records), members, sample)
+            answers = room.no_answers(members, self._state.graph.duration.size)
             self._adding = Native(Adding(self._state, self._empty.fields, encoded, work, answers))
         return self._adding
 
@@ -641,7 +641,7 @@ class PlannedFleet:
                 self._rebuild(used, counters, self._state.records, 2)
             except TicksExhausted:
                 self._rebuild(used, counters, self._state.records, 1)
-                message = f"a plan would need ticks beyond {LARGEST}; {encoding.NO_LIMIT_THERE}"
+                message = f"a plan would need ticks beyond {LARGEST}; {limits.NO_LIMIT_THERE}"
                 raise Refusal("limit", "$.robots", "limit/ticks", message) from None
 
     def _rebuild(self, used: Sequence[int], counters: Sequence[int], records: Records, times: int) -> None:
@@ -674,7 +674,7 @@ class PlannedFleet:
     def record(self, plan: Plan) -> int:
         """Take up a plan without reserving it; the number by which it is known."""
         for position, visit in enumerate(plan.visits):
-            encoding.refuse_tick(f"$.plans[{self._index[plan.robot]}].visits[{position}]", visit.leave or visit.enter)
+            limits.refuse_tick(f"$.plans[{self._index[plan.robot]}].visits[{position}]", visit.leave or visit.enter)
         record = self._call(lambda: write_plan(self._native, self.instance, self._index[plan.robot], plan))
         self._plans[record] = plan
         return record

@@ -18,7 +18,7 @@ from carp_optimized.neighbourhood.distances import (
 )
 from carp_optimized.queries.search import find_plan, find_plan_alone
 from carp_optimized.state.arrays import NEVER, NONE, Records, Work
-from carp_optimized.state.encoding import no_work
+from carp_optimized.state.room import no_work
 from carp_spec import Neighbourhood, neighbourhood_rules
 from carproof.generate import Fleet, Grid, Range, grid_instance
 from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way

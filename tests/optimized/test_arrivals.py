@@ -4,7 +4,7 @@ import pytest
 from tests.optimized.arrivals import CROWDED, ROOMS, arrivals, convoy, scaled
 from tests.profiles import rest_in
 
-from carp_optimized.state import encoding
+from carp_optimized.state import room
 from carproof.testing.random_instances import Mix
 
 QUESTIONS = 600
@@ -19,9 +19,9 @@ def test_robots_that_arrive_are_planned_alike_also_where_guides_end_early(
     for number in range(part, QUESTIONS, PARTS):
         question = arrivals(number, mix)
         expected = question.by_reference()
-        for detour in (encoding.DETOUR, number // PARTS % 2):
+        for detour in (room.DETOUR, number // PARTS % 2):
             with monkeypatch.context() as patched:
-                patched.setattr(encoding, "DETOUR", detour)
+                patched.setattr(room, "DETOUR", detour)
                 assert question.by_fleet()[0] == expected, (number, detour)
 
 

@@ -12,7 +12,7 @@ import carp_optimized
 import carp_reference
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.neighbourhood.distances import term
-from carp_optimized.state import encoding
+from carp_optimized.state import encoding, room
 from carp_optimized.state.arrays import FURTHER, Search
 from carp_spec import (
     Carp,
@@ -66,7 +66,7 @@ def test_rows_of_windows_grow() -> None:
 
 @pytest.mark.parametrize("sizes", [(4, 16, 16), (64, 4, 4)], ids=["records", "visits of plans made elsewhere"])
 def test_room_for_plans_grows(monkeypatch: pytest.MonkeyPatch, sizes: tuple[int, int, int]) -> None:
-    no_records = encoding.no_records
+    no_records = room.no_records
     monkeypatch.setattr(encoding, "no_records", lambda *_: no_records(*sizes))
     instance = grid_instance(Grid(4, 4), Fleet(9))
     assert_alike(instance, Neighbourhood(m=3))
@@ -98,7 +98,7 @@ UNEVEN = ResourceGraph((*LINE.resources[:2], Resource("c", duration=2), Resource
 def test_scratch_grows(
     monkeypatch: pytest.MonkeyPatch, cut: tuple[str, str], instance: Instance, planner: Planner
 ) -> None:
-    no_search, calls = encoding.no_search, count()
+    no_search, calls = room.no_search, count()
 
     def search(windows: int, edges: int) -> Search:
         whole = no_search(windows, edges)
@@ -109,7 +109,7 @@ def test_scratch_grows(
 
 
 def test_guides_that_do_not_all_fit_are_made_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(encoding, "GUIDE_PLACES", 1)
+    monkeypatch.setattr(room, "GUIDE_PLACES", 1)
     instance = grid_instance(Grid(9, 9), Fleet(70, distinct="goals"))
     for planner in (Carp(), Greedy()):
         assert_alike(instance, planner)
@@ -120,7 +120,7 @@ def test_a_guide_ends_a_detour_behind_the_start_until_more_of_it_is_asked_for(
     monkeypatch: pytest.MonkeyPatch, last: int, pace: int
 ) -> None:
     """On a line, whose far end makes the durations alike or not."""
-    monkeypatch.setattr(encoding, "DETOUR", 3)
+    monkeypatch.setattr(room, "DETOUR", 3)
     cells = (*(Resource(str(k)) for k in range(19)), Resource("19", duration=last))
     line = ResourceGraph(cells, tuple((str(k), str(k + 1)) for k in range(19)))
     fleet = PlannedFleet(Instance(line, (Robot("r", "4", "2", pace=pace), Robot("s", "17", "2", pace=pace))))
@@ -141,7 +141,7 @@ def test_a_detour_longer_than_that_of_a_guide_is_found(monkeypatch: pytest.Monke
     graph = ResourceGraph(cells, (("a", "b"), ("b", "d"), ("b", "side"), *pairwise(around)))
     robots = (Robot("stays", "b", "b"), Robot("r", "a", "d", release=2))
     for detour in (0, 1, 8, LARGEST):
-        monkeypatch.setattr(encoding, "DETOUR", detour)
+        monkeypatch.setattr(room, "DETOUR", detour)
         assert_alike(Instance(graph, robots), planner)
         assert_alike(Instance(replace(graph, edges=graph.edges[:-1]), robots), planner)
 

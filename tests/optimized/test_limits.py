@@ -6,7 +6,7 @@ import pytest
 
 import carp_optimized
 import carp_reference
-from carp_optimized.state import encoding
+from carp_optimized.state import room
 from carp_spec import Carp, Instance, Neighbourhood, Plan, Refusal, Resource, ResourceGraph, Robot, TimeExpanded, Visit
 
 LARGEST = 2**30 - 1
@@ -75,7 +75,7 @@ def test_a_goal_behind_resources_that_are_too_far_is_refused_and_not_called_out_
 def test_a_detour_that_is_too_far_is_refused_where_no_other_way_is_free(
     monkeypatch: pytest.MonkeyPatch, detour: int
 ) -> None:
-    monkeypatch.setattr(encoding, "DETOUR", detour)
+    monkeypatch.setattr(room, "DETOUR", detour)
     cells = (Resource("a"), Resource("b"), Resource("x", duration=2**29), Resource("y", duration=2**29))
     graph = ResourceGraph(cells, (("a", "b"), ("a", "x"), ("x", "y"), ("y", "b")), directed=True)
     instance = Instance(graph, (Robot("stays", "b", "b"), Robot("r", "a", "b")))

@@ -10,7 +10,7 @@ import carp_optimized
 import carp_optimized.fleet
 import carp_reference
 from carp_optimized.recording import enlarged
-from carp_optimized.state import encoding
+from carp_optimized.state import encoding, room
 from carp_optimized.state.arrays import NONE, Records
 from carp_reference.problem import prepare
 from carp_reference.query import find_plan
@@ -159,7 +159,7 @@ def test_plans_alone_for_which_there_is_too_little_room_get_more(monkeypatch: py
 
     monkeypatch.setattr("carp_optimized.fleet.enlarged", enlarged_seldom)
     narrow = carp_optimized.fleet.PlannedFleet(instance)
-    narrow._take(encoding.with_room(narrow._state, narrow._state.windows.start.size, encoding.no_records(2, 30, 30)))
+    narrow._take(encoding.with_room(narrow._state, narrow._state.windows.start.size, room.no_records(2, 30, 30)))
     narrow.carp(range(12))
     assert enlargements
     before = len(enlargements)

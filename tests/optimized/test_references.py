@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from carp_optimized.jit.references import Native
-from carp_optimized.state.encoding import empty_rows, no_search
+from carp_optimized.state.room import empty_rows, no_search
 
 
 def test_an_array_of_another_kind_is_refused() -> None:

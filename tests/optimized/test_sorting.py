@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from carp_optimized.neighbourhood.orders import key_of, sort_rows
-from carp_optimized.state.encoding import no_work
+from carp_optimized.state.room import no_work
 from carp_spec.permutations import shuffle, splitmix64
 
 pytestmark = pytest.mark.skipif(os.environ.get("NUMBA_DISABLE_JIT") != "1", reason="it runs uncompiled")

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from carp_optimized.execution.trace_check import follows
 from carp_optimized.jit.compiling import entry
 from carp_optimized.jit.kinds import Longs
-from carp_optimized.state.encoding import refuse_tick, refuse_what_is_too_large
+from carp_optimized.state.limits import refuse_tick, refuse_what_is_too_large
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
 from carp_spec.execution.dependencies import stays_by_constraint
 from carp_spec.execution.execution_rules import require_followed, require_lawful_ends

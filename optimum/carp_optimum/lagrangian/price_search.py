@@ -11,7 +11,8 @@ from msgspec.structs import replace
 from carp_optimized.jit.kinds import IntTable, Longs, LongTable
 from carp_optimized.jit.references import Native
 from carp_optimized.state.arrays import LARGEST, NONE
-from carp_optimized.state.encoding import encode_graph, refuse_tick, refuse_what_is_too_large
+from carp_optimized.state.encoding import encode_graph
+from carp_optimized.state.limits import refuse_tick, refuse_what_is_too_large
 from carp_optimum.lagrangian.deadlines import Deadlines, flattened
 from carp_optimum.lagrangian.multipliers import (
     LARGEST_ARRAY,

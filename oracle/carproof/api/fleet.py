@@ -322,7 +322,7 @@ class Fleet:
         require_tick(now)
         if now < self.now:
             raise Refusal("request", "$.now", NOT_BACK.id, f"the tick must be at least {self.now}, and is {now}")
-        from carp_optimized.state.encoding import refuse_tick  # noqa: PLC0415 - numpy is slow to load
+        from carp_optimized.state.limits import refuse_tick  # noqa: PLC0415 - numpy is slow to load
 
         refuse_tick("$.now", now)
         return now
