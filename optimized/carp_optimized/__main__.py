@@ -1,5 +1,6 @@
 """`python -m carp_optimized` compiles the planner, so that no later call has to; once done, it does nothing."""
 
+from carp_optimized.certifying import potentials
 from carp_optimized.execution.following import retime
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.planning import plan_crowd
@@ -29,7 +30,7 @@ def compile_all() -> None:
     fleet.shuffled(Shuffled(2), range(2), lambda: None)
     fleet.carp(range(2))
     fleet.ticks_to_goal(0)
-    fleet.potentials(0)
+    potentials(fleet, 0)
     fleet.add(2, 0, Neighbourhood(m=2))
     plans = fleet.plans
     fleet.clear()
@@ -41,7 +42,7 @@ def compile_all() -> None:
     fleet.fixed_paths(FixedPaths(2))
     fleet.fixed_paths(FixedPaths(2, "disjoint"))
     with_stops = Robot("u", "a", stops=(Stop("b", 1), Stop("c")))
-    PlannedFleet(Instance(graph, (with_stops,))).potentials(0)
+    potentials(PlannedFleet(Instance(graph, (with_stops,))), 0)
     siding = ResourceGraph((*graph.resources, Resource("d")), (*graph.edges, ("b", "d")))  # no order plans the two
     plan_crowd(Instance(siding, (Robot("r", "a", "c"), Robot("s", "c", "a"))), iterations=1, seconds=None)
     here = Plan("t", (Visit("c", 9, 10),))

@@ -1,7 +1,7 @@
 """A fleet that stays up: plans are made and robots added one after the other, on arrays that persist."""
 
 from collections.abc import Callable, Sequence
-from typing import TypeAlias, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -13,7 +13,6 @@ from carp_optimized.jit.references import Native
 from carp_optimized.neighbourhood.adding import add_robot
 from carp_optimized.neighbourhood.polishing import FORGOTTEN, NOW, QUEUED, TURN, play_rounds
 from carp_optimized.neighbourhood.reuse import Queries, Reuse
-from carp_optimized.queries.over_stops import STANDING
 from carp_optimized.recording import enlarged, read_plan, write_plan
 from carp_optimized.state import encoding, limits, room
 from carp_optimized.state.arrays import (
@@ -24,11 +23,9 @@ from carp_optimized.state.arrays import (
     NONE,
     PREFIX,
     SHARED,
-    TOO_FAR,
     UNASKED,
     UNCHANGED,
     UNKNOWN,
-    UNREACHABLE,
     Adding,
     Options,
     Polish,
@@ -43,7 +40,6 @@ from carp_spec.limits import refuse_stops
 from carp_spec.permutations import shuffle, splitmix64
 
 T = TypeVar("T")
-Labels: TypeAlias = list[tuple[int, int]]
 
 WITH_STOPS = Reuse(unchanged=False, prefixes=False, shared=False, bounds=False)
 PART = 64  # robots of a pass between two looks at a clock
@@ -54,8 +50,9 @@ MANY = 1 << 16  # visits and expansions of records that are no longer held
 class PlannedFleet:
     """An instance with the plans that some of its robots have, in planning order.
 
-    Robots are named by their index in the instance. The windows hold the plans of `order` whenever no compiled
-    function is at work; one that runs out of room is called again with larger arrays.
+    Robots are named by their index in the instance. Compiled functions get the arrays of `state` as `native`, within
+    `call`: one that runs out of room is called again with larger arrays. The windows hold the plans of `order` whenever
+    none is at work.
     """
 
     def __init__(self, instance: Instance, reuse: Reuse | None = None, *, shortcuts: bool = True) -> None:
@@ -74,8 +71,8 @@ class PlannedFleet:
         self._names = [*instance.graph.index]
         self._index = {id: position for position, id in enumerate(self._ids)}
         self._vacant: list[int] = []
-        self._destinations = encoding.destinations_in_use(self._state)
-        self._numbered = self._state.guides.goal.size
+        self._destinations = encoding.destinations_in_use(self.state)
+        self._numbered = self.state.guides.goal.size
         self._order = np.zeros(0, np.int32)
         self._records = np.full(len(instance.robots), NONE, np.int32)
         self._noted = self._records
@@ -88,7 +85,7 @@ class PlannedFleet:
     @property
     def queries(self) -> Queries:
         """The queries asked and avoided until now."""
-        counters = [int(count) for count in self._state.counters]
+        counters = [int(count) for count in self.state.counters]
         return Queries(
             asked=counters[ASKED],
             kept=counters[KEPT],
@@ -114,11 +111,11 @@ class PlannedFleet:
 
     def ticks_to_goal(self, robot: int) -> int:
         """The cost of a robot's shortest path on the empty graph; 0 if none exists."""
-        return self._call(lambda: passes.shortest(self._native, robot))
+        return self.call(lambda: passes.shortest(self.native, robot))
 
     def require_robots(self, robots: Sequence[Robot]) -> None:
         """Raise `Refusal` unless the robots can be taken up."""
-        limits.refuse_robots(robots, self._state.longest)
+        limits.refuse_robots(robots, self.state.longest)
 
     def enlist(self, robot: Robot) -> int:
         """Take up a robot of a new id, without a plan yet; its index, which no other has while it is there."""
@@ -136,16 +133,16 @@ class PlannedFleet:
         """Write a robot over the one at an index."""
         ends = encoding.destinations_of(self.instance, robot)
         new = {end for end in ends if end not in self._destinations}
-        is_full = self._numbered + len(new) > self._state.guides.goal.size
-        if new and (is_full or not encoding.has_scale(self._state, robot.pace)):
+        is_full = self._numbered + len(new) > self.state.guides.goal.size
+        if new and (is_full or not encoding.has_scale(self.state, robot.pace)):
             self._make_room(len(self._ids), robot)
         for end in ends:
             if end not in self._destinations:
                 self._destinations[end] = self._numbered
                 self._numbered += 1
-        if not encoding.has_room_for_stops(self._state, index, robot):
-            self._take(encoding.with_stops(self._state, robot))
-        encoding.write_robot(self._state, self.instance, robot, index, self._destinations)
+        if not encoding.has_room_for_stops(self.state, index, robot):
+            self._take(encoding.with_stops(self.state, robot))
+        encoding.write_robot(self.state, self.instance, robot, index, self._destinations)
 
     def dismiss(self, robots: Sequence[int]) -> tuple[RobotId, ...]:
         """Forget robots, with the plans of those that have one; others may get their indices. Their ids."""
@@ -153,7 +150,7 @@ class PlannedFleet:
         for index in robots:
             del self._index[self._ids[index]]
             self._vacant.append(index)
-            encoding.forget_stops(self._state, index)
+            encoding.forget_stops(self.state, index)
         return tuple(map(self._ids.__getitem__, robots))
 
     def withdraw(self, robots: Sequence[int]) -> None:
@@ -172,10 +169,10 @@ class PlannedFleet:
 
     def ended(self, now: int) -> tuple[int, ...]:
         """The robots whose plans are in nobody's way from the tick `now` on."""
-        if self._state.parks:
+        if self.state.parks:
             return ()
-        leave = self._state.records.leave[self._records[self._order]]
-        return tuple(self._order[leave <= now - self._state.gap].tolist())
+        leave = self.state.records.leave[self._records[self._order]]
+        return tuple(self._order[leave <= now - self.state.gap].tolist())
 
     def note(self) -> None:
         """Note the plans as they are now."""
@@ -195,7 +192,7 @@ class PlannedFleet:
         rest = self._order[~np.isin(self._order, changed)]
         after = self._records.copy()
         self._hold(rest, self._records[rest])
-        self._call(lambda: passes.reserve_all(self._native, records))
+        self.call(lambda: passes.reserve_all(self.native, records))
         after[changed] = records
         robots = np.array([self._index[id] for id in order], np.int32)
         self._hold(robots, after[robots])
@@ -223,29 +220,29 @@ class PlannedFleet:
     @property
     def _kinds(self) -> Reuse:
         """The kinds of reuse; robots with stops do not note what their queries read, and have but one."""
-        return self.reuse if self._state.stops.first[-1] == 0 else WITH_STOPS
+        return self.reuse if self.state.stops.first[-1] == 0 else WITH_STOPS
 
     def has_more_visits(self, than: int) -> bool:
         """Whether all plans together have more visits than that."""
-        return int(self._state.records.used[1]) > than and self.visits > than
+        return int(self.state.records.used[1]) > than and self.visits > than
 
     @property
     def visits(self) -> int:
         """The visits of all plans together."""
-        return int(self._state.records.visits[self._records[self._order]].sum(dtype=np.int64))
+        return int(self.state.records.visits[self._records[self._order]].sum(dtype=np.int64))
 
     def commit(self, plans: Sequence[Plan]) -> None:
         """Take over plans made elsewhere, which must fit the plans of the fleet."""
         records = np.array([self.record(plan) for plan in plans], np.int32)
         robots = np.array([self._index[plan.robot] for plan in plans], np.int32)
-        self._call(lambda: passes.reserve_all(self._native, records))
+        self.call(lambda: passes.reserve_all(self.native, records))
         self._hold(np.concatenate([self._order, robots]), np.concatenate([self._records[self._order], records]))
 
     def find(self, robot: int, before: Plan | None, now: int) -> Plan | None:
         """The plan of a robot that is not in the fleet, which has followed the plan `before` until now."""
         limits.refuse_tick("$.now", now)
         followed = NONE if before is None else self.record(before)
-        record = self._call(lambda: passes.find_one(self._native, robot, followed, now))
+        record = self.call(lambda: passes.find_one(self.native, robot, followed, now))
         return None if record == NONE else self._plan(record)
 
     def plan_again(self, robot: int, now: int = 0) -> bool:
@@ -258,11 +255,11 @@ class PlannedFleet:
         self._withdraw(held[held != NONE])
         self._hold(rest, self._records[rest])
         followed = int(held[0]) if now > 0 else NONE
-        found = np.full(1, self._call(lambda: passes.find_one(self._native, robot, followed, now)), np.int32)
+        found = np.full(1, self.call(lambda: passes.find_one(self.native, robot, followed, now)), np.int32)
         is_better = found[0] != NONE and (held[0] == NONE or self._cost(found) < self._cost(held))
         if is_better:
             held, order = found, np.append(rest, np.int32(robot))
-        self._call(lambda: passes.reserve_all(self._native, held[held != NONE]))
+        self.call(lambda: passes.reserve_all(self.native, held[held != NONE]))
         after = self._records.copy()
         after[robot] = held[0]
         self._hold(order, after[order])
@@ -288,16 +285,16 @@ class PlannedFleet:
 
     def _is_best(self, robot: int, record: Ints) -> bool:
         """Whether the robot, which has no plan now, could not arrive earlier than by that one."""
-        used = self._state.records.used.copy()
-        found = np.full(1, self._call(lambda: passes.find_one(self._native, robot, NONE, 0)), np.int32)
+        used = self.state.records.used.copy()
+        found = np.full(1, self.call(lambda: passes.find_one(self.native, robot, NONE, 0)), np.int32)
         is_best = found[0] != NONE and self._cost(found) == self._cost(record)
-        self._state.records.used[:] = used
+        self.state.records.used[:] = used
         return bool(is_best)
 
     def _reserve_next(self, robots: Sequence[int], records: Ints) -> None:
         """Hold further plans behind those held."""
         new = np.array(robots, np.int32)
-        self._call(lambda: passes.reserve_all(self._native, records[new]))
+        self.call(lambda: passes.reserve_all(self.native, records[new]))
         order = np.append(self._order, new)
         self._hold(order, records[order])
 
@@ -306,97 +303,22 @@ class PlannedFleet:
         further = np.array(records, np.int32)
 
         def attempt() -> int:
-            passes.reserve_all(self._native, further)
-            found = passes.find_one(self._native, robot, NONE, 0)
-            passes.withdraw_all(self._native, further)
+            passes.reserve_all(self.native, further)
+            found = passes.find_one(self.native, robot, NONE, 0)
+            passes.withdraw_all(self.native, further)
             return found
 
-        found = self._call(attempt)
+        found = self.call(attempt)
         return None if found == NONE else self._plan(found)
-
-    def find_with_labels(self, robot: int, before: Plan | None, now: int) -> tuple[Plan | None, list[Labels]]:
-        """The same plan, and the windows that its query expanded: their resources, each with the tick of its entry.
-
-        A robot with stops has such a list for each number of stops served; the tick is then that from which it may
-        leave, less the duration. With shortcuts not all windows are expanded that could be entered before the arrival.
-        """
-        search = self._state.search
-        search.expansions[0] = 0
-        search.generation[0] += 1
-        plan = self.find(robot, before, now)
-        own = self.instance.robots[robot]
-        return plan, [self._labels(robot)] if own.has_goal_alone else self._labels_over_stops(len(own.stops))
-
-    def _labels(self, robot: int) -> Labels:
-        """The labels of the last query, of a robot with a goal alone.
-
-        The start is entered as late as the robot may be there to leave it as early: the query does not come back to it,
-        but other plans may. Who has stayed at its goal too long to end there does come back, and has no such label.
-        """
-        search = self._state.search
-        count = int(search.expansions[0])
-        if count == 0:
-            return []
-        resources = search.expanded[:count]
-        enters = (search.popped[:count] >> 32) - self._guide(robot)[resources]
-        start, ready = int(resources[0]), int(search.ready[0])
-        ticks = int(self._state.robots.pace[robot]) * int(self._state.graph.duration[start])
-        overstayed = start == self._state.robots.goal[robot] and not self._state.parks and ready > enters[0] + ticks
-        first = 1 if overstayed else 0
-        enters[0] = ready - ticks
-        return [*zip(resources[first:].tolist(), enters[first:].tolist(), strict=True)]
-
-    def _labels_over_stops(self, count: int) -> list[Labels]:
-        """The labels of the last query, of a robot with so many stops, but for the start."""
-        stops, base = self._state.stops, int(self._state.search.generation[0]) << 32
-        ticks = (base - stops.reached).reshape(-1, stops.stride).T
-        layers: list[Labels] = []
-        for own in ticks[:count]:
-            found = np.flatnonzero((own < 1 << 32) & (base > 0))
-            found = found[found != STANDING]
-            layers.append([*zip(self._state.windows.resource[found].tolist(), own[found].tolist(), strict=True)])
-        return layers
-
-    def potentials(self, robot: int) -> list[dict[int, int]]:
-        """By number of stops served: the resources from which the robot can reach its goal, with the ticks to it.
-
-        Ticks beyond the largest are counted as one more than that.
-        """
-        own = self.instance.robots[robot]
-        if own.has_goal_alone:
-            return [_reaching(self._guide(robot), 0)]
-        layers: list[dict[int, int]] = []
-        rest: int | None = 0
-        first = int(self._state.stops.first[robot])
-        for number, stop in reversed([*enumerate(own.stops, first)]):
-            place = self.instance.graph.index[stop.resource]
-            if layers:
-                longer = self.instance.stay(own.id, stop) - self.instance.duration(own.id, stop.resource)
-                rest = layers[0][place] + longer if place in layers[0] else None
-            layers.insert(0, {} if rest is None else _reaching(self._guide_to_stop(number), rest))
-        return layers
-
-    def _guide(self, robot: int) -> Ints:
-        """The guide of the robot's destination: ticks to the goal."""
-        self._call(lambda: passes.reach_from_everywhere(self._native, robot))
-        guides = self._state.guides
-        guide: Ints = guides.ticks[int(guides.slot[self._state.robots.destination[robot]])]
-        return guide
-
-    def _guide_to_stop(self, number: int) -> Ints:
-        """The guide to a stop, one of those of all robots."""
-        slot = self._call(lambda: passes.reach_stop(self._native, number))
-        guide: Ints = self._state.guides.ticks[slot]
-        return guide
 
     def repeat_query(self, robot: int, times: int) -> None:
         """Ask the query of a robot without a plan that often; for benchmarks."""
-        self._call(lambda: passes.repeat_query(self._native, robot, times))
+        self.call(lambda: passes.repeat_query(self.native, robot, times))
 
     def carp(self, order: Sequence[int], goes_on: Callable[[], bool] = lambda: True) -> None:
         """Plan the robots in order, as if there were no plans yet, as long as it goes on."""
         self.clear()
-        self._state.records.used[:] = 0
+        self.state.records.used[:] = 0
         self._plans.clear()
         robots = np.array(order, np.int32)
         self._pass(robots, self._records, 0, goes_on)
@@ -410,7 +332,7 @@ class PlannedFleet:
         best = np.zeros(0, np.int32), np.zeros(0, np.int32)
         for attempt in range(planner.attempts):
             order = order if attempt == 0 else shuffle(order, stream)
-            used = self._state.records.used.copy()
+            used = self.state.records.used.copy()
             robots = np.array(order, np.int32)
             plans = self._pass(robots, followed, now)
             found = plans != NONE
@@ -419,9 +341,9 @@ class PlannedFleet:
             if best_worth is None or worth < best_worth:
                 best_worth, best = worth, (robots[found], plans[found])
             else:
-                self._state.records.used[:] = used
+                self.state.records.used[:] = used
             advance()
-        self._call(lambda: passes.reserve_all(self._native, best[1]))
+        self.call(lambda: passes.reserve_all(self.native, best[1]))
         self._hold(*best)
 
     def greedy(self, advance: Callable[[], None]) -> None:
@@ -432,9 +354,9 @@ class PlannedFleet:
 
         def rounds() -> int:
             waiting, found = np.arange(count, dtype=np.int32), np.full(count, UNASKED, np.int32)
-            return passes.greedy(self._native, waiting, found, robots, plans, self.reuse.unchanged)
+            return passes.greedy(self.native, waiting, found, robots, plans, self.reuse.unchanged)
 
-        planned = self._call(rounds)
+        planned = self.call(rounds)
         self._hold(robots[:planned], plans[:planned])
         for _ in range(planned):
             advance()
@@ -448,24 +370,24 @@ class PlannedFleet:
 
     def paths(self, robot: int, options: FixedPaths) -> list[Path]:
         """The paths from which a robot may choose."""
-        start, goal = int(self._state.robots.start[robot]), int(self._state.robots.goal[robot])
+        start, goal = int(self.state.robots.start[robot]), int(self.state.robots.goal[robot])
         choose = shortest_paths if options.paths == "shortest" else disjoint_paths
-        return self._call(lambda: choose(self._native, start, goal, options.k))
+        return self.call(lambda: choose(self.native, start, goal, options.k))
 
     def add_on_path(self, robot: int, paths: Sequence[Path]) -> bool:
         """Add a robot on the path on which it arrives first, the first of equals; whether it has a plan on any."""
         self.forget_old_records()
 
         def attempt() -> list[int]:
-            passes.reach_from_everywhere(self._native, robot)
-            moves = self._path_moves = self._path_moves or PathMoves(self._state)
+            passes.reach_from_everywhere(self.native, robot)
+            moves = self._path_moves = self._path_moves or PathMoves(self.state)
             return [passes.find_one(moves.along(path), robot, NONE, 0) for path in paths]
 
-        found = [record for record in self._call(attempt) if record != NONE]
+        found = [record for record in self.call(attempt) if record != NONE]
         if not found:
             return False
-        best = np.array([min(found, key=lambda record: int(self._state.records.arrival[record]))], np.int32)
-        self._call(lambda: passes.reserve_all(self._native, best))
+        best = np.array([min(found, key=lambda record: int(self.state.records.arrival[record]))], np.int32)
+        self.call(lambda: passes.reserve_all(self.native, best))
         robots = np.append(self._order, np.int32(robot))
         self._hold(robots, np.append(self._records[self._order], best))
         return True
@@ -489,9 +411,9 @@ class PlannedFleet:
                 adding.fields.work.stream[0] = (options.seed + (robot if number is None else number)) % 2**64
             return add_robot(adding, self._order, robot, followed, now, order)
 
-        if self._call(attempt):
+        if self.call(attempt):
             self._order = order
-            self._records = self._state.reserved.copy()
+            self._records = self.state.reserved.copy()
             return True
         if options.fallback is None:
             return False
@@ -503,8 +425,8 @@ class PlannedFleet:
         able = np.array(sorted(self._index.values() if now == 0 else self.order), np.int32)
         followed = self._records if now > 0 else np.full(len(self._records), NONE, np.int32)
         costs = np.full(len(self._records), NONE, np.int64)
-        self._call(lambda: passes.cost_each_alone(self._empty, able, followed, now, costs))
-        polish = room.no_polish(costs, self._state.graph.duration.size)
+        self.call(lambda: passes.cost_each_alone(self._empty, able, followed, now, costs))
+        polish = room.no_polish(costs, self.state.graph.duration.size)
         polish.stream[0] = seed
         polish.counts[NOW] = now
         polish.counts[FORGOTTEN] = self._forgotten
@@ -525,9 +447,9 @@ class PlannedFleet:
             work.queue[:size] = self._order
             work.plans[:] = self._records
             work.counts[QUEUED], work.counts[TURN], work.stream[0] = size, turn, stream
-            return play_rounds(self._native, polishing, self._empty, rounds)
+            return play_rounds(self.native, polishing, self._empty, rounds)
 
-        played = self._call(attempt)
+        played = self.call(attempt)
         order = work.queue[: work.counts[QUEUED]].copy()
         self._hold(order, work.plans[order])
         self._ask_again()
@@ -535,7 +457,7 @@ class PlannedFleet:
 
     def _ask_again(self) -> None:
         """Let all queries be asked again: plans are withdrawn that have been in the way of others."""
-        self._state.records.expansions[self._records[self._order]] = UNKNOWN
+        self.state.records.expansions[self._records[self._order]] = UNKNOWN
 
     @property
     def worth(self) -> tuple[int, int]:
@@ -553,8 +475,8 @@ class PlannedFleet:
         encoded = Options(members, sample, options.baseline, *kinds)
         if self._adding is None or self._adding.fields.options != encoded:
             work = room.no_work(len(self._records), members, sample)
-            answers = room.no_answers(members, self._state.graph.duration.size)
-            self._adding = Native(Adding(self._state, self._empty.fields, encoded, work, answers))
+            answers = room.no_answers(members, self.state.graph.duration.size)
+            self._adding = Native(Adding(self.state, self._empty.fields, encoded, work, answers))
         return self._adding
 
     def clear(self) -> None:
@@ -565,8 +487,8 @@ class PlannedFleet:
 
     def _take(self, state: State) -> None:
         """Work on other arrays."""
-        self._state = state
-        self._native = Native(state)
+        self.state = state
+        self.native = Native(state)
         self._empty = Native(encoding.without_reservations(state))
         self._adding = None
         self._path_moves = None
@@ -574,7 +496,7 @@ class PlannedFleet:
     def _make_room(self, size: int, robot: Robot) -> None:
         """Make room for that many robots, up to that robot's pace, and more destinations; guides are made again."""
         further = max(size, 2 * len(robot.stops))
-        state, self._numbered = encoding.with_robots(self._state, size, robot.pace, further)
+        state, self._numbered = encoding.with_robots(self.state, size, robot.pace, further)
         self._destinations = encoding.destinations_in_use(state)
         self._take(state)
         more = size - len(self._ids)
@@ -584,7 +506,7 @@ class PlannedFleet:
         self._noted = np.concatenate([self._noted, nothing])
 
     def _withdraw(self, records: Ints) -> None:
-        self._call(lambda: passes.withdraw_all(self._native, records))
+        self.call(lambda: passes.withdraw_all(self.native, records))
 
     def _fall_back(self, robot: int, followed: int, now: int, planner: Shuffled) -> bool:
         order, held = self._order, self._records[self._order]
@@ -593,7 +515,7 @@ class PlannedFleet:
         if self._order.size == order.size + 1:
             return True
         self.clear()
-        self._call(lambda: passes.reserve_all(self._native, held))
+        self.call(lambda: passes.reserve_all(self.native, held))
         self._hold(order, held)
         return False
 
@@ -609,9 +531,9 @@ class PlannedFleet:
             part, found = robots[first : first + PART], plans[first : first + PART]
 
             def attempt(part: Ints = part, found: Ints = found, first: int = first) -> None:
-                passes.carp(self._native, part, followed, now, found, first)
+                passes.carp(self.native, part, followed, now, found, first)
 
-            self._call(attempt)
+            self.call(attempt)
             held = plans[: first + PART]
             self._hold(robots[: first + PART][held != NONE], held[held != NONE])
         return plans
@@ -623,59 +545,59 @@ class PlannedFleet:
         self._records[robots] = records
 
     def _cost(self, records: Ints) -> int:
-        held = self._state.records
+        held = self.state.records
         last = held.visits_at[records] + held.visits[records] - 1
-        releases = self._state.robots.release[held.robot[records]]
+        releases = self.state.robots.release[held.robot[records]]
         return int(held.enter[last].sum(dtype=np.int64) - releases.sum(dtype=np.int64))
 
-    def _call(self, function: Callable[[], T]) -> T:
+    def call(self, function: Callable[[], T]) -> T:
         """Call a compiled function, again with more room if there was too little; refuse ticks that are too large."""
         while True:
-            used = self._state.records.used.tolist()
-            counters = self._state.counters.tolist()
+            used = self.state.records.used.tolist()
+            counters = self.state.counters.tolist()
             try:
                 return function()
             except RecordsExhausted:
-                self._rebuild(used, counters, enlarged(self._state.records), 1)
+                self._rebuild(used, counters, enlarged(self.state.records), 1)
             except RoomExhausted:
-                self._rebuild(used, counters, self._state.records, 2)
+                self._rebuild(used, counters, self.state.records, 2)
             except TicksExhausted:
-                self._rebuild(used, counters, self._state.records, 1)
+                self._rebuild(used, counters, self.state.records, 1)
                 message = f"a plan would need ticks beyond {LARGEST}; {limits.NO_LIMIT_THERE}"
                 raise Refusal("limit", "$.robots", "limit/ticks", message) from None
 
     def _rebuild(self, used: Sequence[int], counters: Sequence[int], records: Records, times: int) -> None:
         """Go back to the plans held before a call that was broken off, with these records and `times` the places."""
-        self._state.counters[:] = counters
+        self.state.counters[:] = counters
         records.used[:] = used
-        self._take(encoding.with_room(self._state, times * self._state.windows.start.size, records))
+        self._take(encoding.with_room(self.state, times * self.state.windows.start.size, records))
         held = self._records[self._order]
-        self._call(lambda: passes.reserve_all(self._native, held))
+        self.call(lambda: passes.reserve_all(self.native, held))
 
     def forget_old_records(self) -> None:
         """Forget records of plans that are no longer held, if they have become many."""
-        _, visits, expansions = self._state.records.used.tolist()
+        _, visits, expansions = self.state.records.used.tolist()
         if visits + expansions > self._many:
             self.forget()
 
     def forget(self) -> None:
         """Keep only the records of the plans held."""
         self._forgotten += 1
-        used = self._state.records.used
+        used = self.state.records.used
         kept = np.sort(self._records[self._order])
         number = np.full(int(used[0]) + 1, NONE, np.int32)  # the last is that of no record
         number[kept] = np.arange(kept.size)
         self._noted = number[self._noted]
-        keep_records(self._native, kept)
+        keep_records(self.native, kept)
         self._plans = {new: self._plans[int(old)] for new, old in enumerate(kept) if int(old) in self._plans}
-        self._records = self._state.reserved.copy()
+        self._records = self.state.reserved.copy()
         self._many = 4 * (int(used[1]) + int(used[2])) + MANY
 
     def record(self, plan: Plan) -> int:
         """Take up a plan without reserving it; the number by which it is known."""
         for position, visit in enumerate(plan.visits):
             limits.refuse_tick(f"$.plans[{self._index[plan.robot]}].visits[{position}]", visit.leave or visit.enter)
-        record = self._call(lambda: write_plan(self._native, self.instance, self._index[plan.robot], plan))
+        record = self.call(lambda: write_plan(self.native, self.instance, self._index[plan.robot], plan))
         self._plans[record] = plan
         return record
 
@@ -685,11 +607,4 @@ class PlannedFleet:
         return self._plans[record]
 
     def _columns(self, record: int) -> PlanColumns:
-        return read_plan(self._state, self._names, record, self._ids)
-
-
-def _reaching(guide: Ints, rest: int) -> dict[int, int]:
-    """The resources that a guide reaches, with their ticks and the rest, at most one more than the largest."""
-    ticks = np.where(guide == TOO_FAR, LARGEST + 1, np.minimum(guide.astype(np.int64) + rest, LARGEST + 1))
-    reaching = np.flatnonzero(guide != UNREACHABLE)
-    return dict(zip(reaching.tolist(), ticks[reaching].tolist(), strict=True))
+        return read_plan(self.state, self._names, record, self._ids)

@@ -29,7 +29,7 @@ def fleet_of(seed: int, robots: int = ROBOTS) -> PlannedFleet:
 
 def dump(fleet: PlannedFleet, robots: list[int]) -> str:
     """The windows and the guides as numbers, for `query.cpp`."""
-    state = fleet._state
+    state = fleet.state
     windows, graph = state.windows, state.graph
     numbers = [graph.duration.size, graph.target.size, len(robots), TIMES]
     for offset, size in zip(windows.offset.tolist(), windows.size.tolist(), strict=True):
@@ -40,7 +40,7 @@ def dump(fleet: PlannedFleet, robots: list[int]) -> str:
         targets = graph.target[graph.first[resource] : graph.first[resource + 1]].tolist()
         numbers += [len(targets), *targets]
     for robot in robots:
-        passes.shortest(fleet._native, robot)
+        passes.shortest(fleet.native, robot)
         ticks = state.guides.ticks[state.guides.slot[state.robots.destination[robot]]]
         numbers += [int(state.robots.start[robot]), int(state.robots.release[robot]), int(state.robots.goal[robot])]
         for resource, each in enumerate(ticks.tolist()):

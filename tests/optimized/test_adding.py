@@ -49,7 +49,7 @@ def split(fleet: PlannedFleet, members: int) -> Work:
     """The last robots are members, and the others outside."""
     work = no_work(len(fleet._records), members, 0)
     for robot in fleet._order:
-        follow(fleet._state, work, int(robot), int(fleet._records[robot]))
+        follow(fleet.state, work, int(robot), int(fleet._records[robot]))
     outside = len(fleet.order) - members
     work.outside[:outside] = fleet._order[:outside]
     work.members[:] = fleet._order[outside:]
@@ -67,18 +67,18 @@ def test_the_nearest_robot_is_that_of_the_law(fleet: PlannedFleet, data: st.Data
     work = split(fleet, members)
     rows = [[by_law(fleet, robot, member) for member in range(outside, robots)] for robot in range(outside)]
     expected = neighbourhood_rules.nearest(rows)
-    assert nearest(fleet._state, work, outside, members) == expected
+    assert nearest(fleet.state, work, outside, members) == expected
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(distances, "least_sum", lambda _x, _y, _ticks: 0)
         patch.setattr(distances, "are_apart", lambda *_: False)
-        assert nearest(fleet._state, work, outside, members) == expected
+        assert nearest(fleet.state, work, outside, members) == expected
     work.ended[work.outside[expected]] = 1
     if outside == 1:
-        assert nearest(fleet._state, work, outside, members) == NONE
+        assert nearest(fleet.state, work, outside, members) == NONE
     else:
         others = [each for each in range(outside) if each != expected]
         left = neighbourhood_rules.nearest([rows[each] for each in others])
-        assert nearest(fleet._state, work, outside, members) == others[left]
+        assert nearest(fleet.state, work, outside, members) == others[left]
 
 
 def what_was_read(records: Records, record: int) -> list[list[int]]:
@@ -111,7 +111,7 @@ def test_a_plan_where_nothing_is_reserved_is_made_as_by_a_search(under_way: Flee
 
 def rows(fleet: PlannedFleet) -> list[list[tuple[int, ...]]]:
     """The windows of each resource, with the robots that end them and where these came from."""
-    windows = fleet._state.windows
+    windows = fleet.state.windows
     fields = (windows.start, windows.end, windows.source, windows.robot)
     slots = [slice(int(at), int(at + size)) for at, size in zip(windows.offset, windows.size, strict=True)]
     return [list(zip(*(each[row].tolist() for each in fields), strict=True)) for row in slots]

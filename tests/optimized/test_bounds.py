@@ -17,7 +17,7 @@ from carp_experiments.measuring.crosscheck import first_difference
 
 fleet = PlannedFleet(Instance(ResourceGraph((Resource("a"),), ()), (Robot("r", "a", "a"),)))
 try:
-    passes.shortest(fleet._native, 1)
+    passes.shortest(fleet.native, 1)
 except IndexError:
     print("an index out of bounds is noticed")
 print(first_difference(300, seed=5))

@@ -10,6 +10,7 @@ from tests.optimized.towns import TOWNS
 
 import carp_optimized
 import carp_reference
+from carp_optimized.certifying import potentials
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.neighbourhood.distances import term
 from carp_optimized.state import encoding, room
@@ -127,9 +128,9 @@ def test_a_guide_ends_a_detour_behind_the_start_until_more_of_it_is_asked_for(
     to_goal = [*(pace * abs(k - 2) for k in range(19)), pace * (16 + last)]
     reached = 4 + 3 * last
     assert fleet.ticks_to_goal(0) == 2 * pace
-    assert fleet._state.guides.ticks[0].tolist() == [*to_goal[: reached + 1], *(FURTHER,) * (19 - reached)]
+    assert fleet.state.guides.ticks[0].tolist() == [*to_goal[: reached + 1], *(FURTHER,) * (19 - reached)]
     assert fleet.ticks_to_goal(1) == 15 * pace
-    assert fleet.potentials(0) == [dict(enumerate(to_goal))]
+    assert potentials(fleet, 0) == [dict(enumerate(to_goal))]
 
 
 @pytest.mark.parametrize("planner", PLANNERS, ids=str)
@@ -152,9 +153,9 @@ def test_a_detour_longer_than_that_of_a_guide_is_found(monkeypatch: pytest.Monke
 def test_ranks_take_the_place_of_ticks_and_indices_that_do_not_fit_into_32_bits(
     monkeypatch: pytest.MonkeyPatch, instance: Instance
 ) -> None:
-    assert PlannedFleet(instance)._state.guides.rank.size == 0
+    assert PlannedFleet(instance).state.guides.rank.size == 0
     monkeypatch.setattr(encoding, "scale_of_tolls", lambda *_: 0)
-    assert PlannedFleet(instance)._state.guides.rank.size > 0
+    assert PlannedFleet(instance).state.guides.rank.size > 0
     for planner in (Carp(), Neighbourhood(m=3)):
         assert_alike(instance, planner)
 

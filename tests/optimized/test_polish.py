@@ -139,9 +139,9 @@ def test_plans_that_are_not_kept_take_no_room() -> None:
     best = carp_optimized.polish(instance, carp_optimized.plan(instance, Carp()), iterations=3000)
     fleet = carp_optimized.fleet.PlannedFleet(instance)
     fleet.commit(best.plans)
-    before = int(fleet._state.records.used[0])
+    before = int(fleet.state.records.used[0])
     rounds = fleet.polish(fleet.polishing(1), 200)
-    assert fleet._state.records.used[0] - before < rounds, "a round plans several members"
+    assert fleet.state.records.used[0] - before < rounds, "a round plans several members"
 
 
 def test_plans_alone_for_which_there_is_too_little_room_get_more(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -159,7 +159,7 @@ def test_plans_alone_for_which_there_is_too_little_room_get_more(monkeypatch: py
 
     monkeypatch.setattr("carp_optimized.fleet.enlarged", enlarged_seldom)
     narrow = carp_optimized.fleet.PlannedFleet(instance)
-    narrow._take(encoding.with_room(narrow._state, narrow._state.windows.start.size, room.no_records(2, 30, 30)))
+    narrow._take(encoding.with_room(narrow.state, narrow.state.windows.start.size, room.no_records(2, 30, 30)))
     narrow.carp(range(12))
     assert enlargements
     before = len(enlargements)

@@ -26,7 +26,7 @@ SIZES = Sizes(resources=6, robots=5, groups=2)
 
 def asked(fleet: PlannedFleet, robot: int, before: Plan | None, now: int, latest: int) -> tuple[int, list[list[int]]]:
     """The record found by then, and what the query has expanded."""
-    state = fleet._state
+    state = fleet.state
     state.search.expansions[0] = 0
     record = find_plan_by(state, robot, NONE if before is None else fleet.record(before), now, NEVER, latest)
     count = int(state.search.expansions[0])
@@ -35,13 +35,13 @@ def asked(fleet: PlannedFleet, robot: int, before: Plan | None, now: int, latest
 
 def reasons_among(fleet: PlannedFleet, robot: int, record: int, latest: int, plans: Sequence[Plan]) -> list[Plan]:
     """The reasons for the answer that the last query of the fleet found."""
-    answers = no_answers(len(plans), fleet._state.graph.duration.size)
+    answers = no_answers(len(plans), fleet.state.graph.duration.size)
     start_answers(answers, len(plans))
     for member, plan in enumerate(plans):
         held = int(fleet._records[fleet.index(plan.robot)])
-        assert number_plan(fleet._state, answers, member, held) == member
+        assert number_plan(fleet.state, answers, member, held) == member
     all_plans = (1 << len(plans)) - 1 | 1 << PLANS
-    found = reasons(fleet._state, answers, robot, record, latest, all_plans)
+    found = reasons(fleet.state, answers, robot, record, latest, all_plans)
     assert found >> PLANS == 1
     return [plan for member, plan in enumerate(plans) if found >> member & 1 == 1]
 
@@ -57,9 +57,9 @@ def test_a_query_does_the_same_without_plans_that_are_no_reasons(under_way: Flee
     fleet = fleet_of(instance, others)
     robot = fleet.index(name)
     before = NONE if followed is None else fleet.record(followed)
-    best = passes.find_one(fleet._native, robot, before, under_way.now)
+    best = passes.find_one(fleet.native, robot, before, under_way.now)
     assume(best != NONE)
-    latest = data.draw(st.sampled_from([NEVER, int(fleet._state.records.arrival[best]) - 1]))
+    latest = data.draw(st.sampled_from([NEVER, int(fleet.state.records.arrival[best]) - 1]))
     record, expanded = asked(fleet, robot, followed, under_way.now, latest)
     assume(expanded[0])
     given_plans = data.draw(st.lists(st.sampled_from(others), min_size=1, unique_by=lambda plan: plan.robot))

@@ -48,7 +48,7 @@ def hulls(plan: Plan) -> Hulls:
 
 def may_differ(fleet: PlannedFleet, robot: RobotId, record: int, freed: Hulls) -> bool:
     """The claim of the lemma about a query, by the resources that it has expanded."""
-    instance, records = fleet.instance, fleet._state.records
+    instance, records = fleet.instance, fleet.state.records
     first, count = int(records.expansions_at[record]), int(records.expansions[record])
     if count == UNKNOWN:
         return True
@@ -87,15 +87,15 @@ def test_a_query_is_repeated_only_where_the_lemma_says_and_else_finds_the_same(
     assume(others)
     freed = data.draw(st.lists(st.sampled_from(others), min_size=1, unique=True))
     fleet = fleet_of(instance, others)
-    state = fleet._state
+    state = fleet.state
     before = NONE if followed is None else fleet.record(followed)
-    record = passes.find_one(fleet._native, fleet.index(robot), before, under_way.now)
+    record = passes.find_one(fleet.native, fleet.index(robot), before, under_way.now)
     assume(record != NONE)
     forget_freed(state.freed)
     whole: Hulls = {}
     for plan in freed:
         withdrawn = int(fleet._records[fleet.index(plan.robot)])
-        passes.withdraw_all(fleet._native, np.array([withdrawn], np.int32))
+        passes.withdraw_all(fleet.native, np.array([withdrawn], np.int32))
         note_freed(state, withdrawn, 0, 0)
         for resource, (earliest, latest) in hulls(plan).items():
             known = whole.get(resource, (earliest, latest))

@@ -51,9 +51,9 @@ def entered_in_vain(crowd: str, *, shortcuts: bool) -> int:
     fleet.carp(range(len(instance.robots)))
     count = 0
     for robot in sorted({*range(len(instance.robots))} - {*fleet.order}):
-        before = fleet._state.search.generation << 32
+        before = fleet.state.search.generation << 32
         assert fleet.find(robot, None, 0) is None
-        count += int((fleet._state.search.reached > before).sum())
+        count += int((fleet.state.search.reached > before).sum())
     return count
 
 
@@ -71,7 +71,7 @@ def expanded(*, shortcuts: bool) -> int:
         beside = PlannedFleet(CROWDS["open"], shortcuts=shortcuts)
         beside.commit([plan for robot, plan in zip(fleet.order, fleet.plans, strict=True) if robot != asked])
         beside.find(asked, None, 0)
-        count += int(beside._state.search.expansions[0])
+        count += int(beside.state.search.expansions[0])
     return count
 
 

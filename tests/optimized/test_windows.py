@@ -27,7 +27,7 @@ def rows(table: Rows, resource: int) -> list[tuple[int, int, int, int]]:
 
 def held(fleet: PlannedFleet) -> list[object]:
     """All that is reserved; stays that begin, or end, at a tick are in no order."""
-    windows, stays = fleet._state.windows, fleet._state.stays
+    windows, stays = fleet.state.windows, fleet.state.stays
     reported: list[object] = [rows(windows, resource) for resource in range(windows.size.size)]
     for constraint in np.flatnonzero(stays.room).tolist():
         entries = rows(stays, constraint)
@@ -39,7 +39,7 @@ def assert_windows_are(fleet: PlannedFleet, instance: Instance, plans: Sequence[
     for position, resource in enumerate(instance.graph.resources):
         windows = tuple(
             Window(start, None if end == NEVER else end)
-            for start, end, *_ in rows(fleet._state.windows, position)
+            for start, end, *_ in rows(fleet.state.windows, position)
             if start < end  # between two stays without a tick between, too, there is a window, of no length
         )
         assert windows == free_windows(constraints_on(instance.graph, plans, resource.id))
@@ -59,17 +59,17 @@ def test_withdrawing_undoes_reserving_in_any_order(planned: PlannedInstance, ran
         if absent and (not there or random.random() < 0.6):
             position = random.choice(absent)
             record = np.array([records[position]], np.int32)
-            passes.reserve_all(fleet._native, record)
+            passes.reserve_all(fleet.native, record)
             after = held(fleet)
-            passes.withdraw_all(fleet._native, record)
+            passes.withdraw_all(fleet.native, record)
             assert held(fleet) == before
-            passes.reserve_all(fleet._native, record)
+            passes.reserve_all(fleet.native, record)
             assert held(fleet) == after
             there.append(position)
         elif there:
             position = there.pop(random.randrange(len(there)))
-            passes.withdraw_all(fleet._native, np.array([records[position]], np.int32))
+            passes.withdraw_all(fleet.native, np.array([records[position]], np.int32))
         assert_windows_are(fleet, planned.instance, [plans[position] for position in there])
     for position in there:
-        passes.withdraw_all(fleet._native, np.array([records[position]], np.int32))
+        passes.withdraw_all(fleet.native, np.array([records[position]], np.int32))
     assert held(fleet) == empty
