@@ -15,7 +15,7 @@ import carp_reference
 import carp_verify.query.rules
 from carp_spec import Plan, Robot, Visit
 from carp_spec.documents.query_certificates import ServedLayer, certificate_of
-from carp_spec.model import Following
+from carp_spec.model import Following, Group
 from carp_spec.windows import Window
 from carp_verify.query.verify import Traffic, verify_query
 from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way
@@ -122,28 +122,41 @@ def test_plans_that_break_a_rule_or_are_of_one_robot_or_of_none_are_refused() ->
         assert beside(VANISHING, "r", *plans).rule_broken(certificate) == "query-certificate/plans"
 
 
-STAYS = st.lists(st.tuples(st.integers(0, 12), st.none() | st.integers(1, 8)), max_size=6)
+TICKS = st.integers(1, 6)
+WAYS = st.lists(st.tuples(st.integers(0, 12), TICKS | st.none(), TICKS | st.none(), st.booleans()), max_size=6)
+LAST = 30
 
 
-@given(STAYS, st.integers(1, 3), st.sampled_from(("allowed", "forbidden")))
+@given(WAYS, st.integers(1, 3), st.none() | st.integers(1, 3), st.sampled_from(("allowed", "forbidden")))
 def test_the_free_windows_are_those_of_counting_robots_tick_by_tick(
-    stays: Sequence[tuple[int, int | None]], capacity: int, following: Following
+    ways: Sequence[tuple[int, int | None, int | None, bool]], capacity: int, together: int | None, following: Following
 ) -> None:
+    """Those of b, which may be in a group with c: robots are in b, then perhaps in c, or the other way round."""
     instance = replace(town("vanish", capacity=capacity), following=following)
+    if together is not None:
+        instance = replace(instance, graph=replace(instance.graph, groups=(Group("g", ("b", "c"), together),)))
     traffic = Traffic(instance)
-    for robot, (enter, ticks) in enumerate(stays):
-        traffic.commit(Plan(robot, (Visit("b", enter, None if ticks is None else enter + ticks),)))
-    last = 25
-    has_room = [
-        sum(enter <= tick and (ticks is None or tick < enter + ticks + instance.gap) for enter, ticks in stays)
-        < capacity
-        for tick in range(last + 1)
-    ]
-    free = [has_room[tick] and has_room[tick + instance.gap] for tick in range(last)]
-    for tick in range(last):
-        ahead = [at for at in range(tick, last) if at == tick or free[at] != free[at - 1]]
+    own, grouped = [0] * (LAST + 1), [0] * (LAST + 1)
+    for robot, (enter, first, second, turned) in enumerate(ways):
+        here, there = ("c", "b") if turned else ("b", "c")
+        visits = [Visit(here, enter, None if first is None else enter + first)]
+        if first is not None:
+            visits.append(Visit(there, enter + first, None if second is None else enter + first + second))
+        traffic.commit(Plan(robot, tuple(visits)))
+        for tick in range(LAST + 1):
+            at = {
+                each.resource
+                for each in visits
+                if each.enter <= tick and (each.leave is None or tick < each.leave + instance.gap)
+            }
+            own[tick] += "b" in at
+            grouped[tick] += bool(at)
+    has_room = [own[at] < capacity and (together is None or grouped[at] < together) for at in range(LAST + 1)]
+    free = [has_room[tick] and has_room[tick + instance.gap] for tick in range(LAST)]
+    for tick in range(LAST):
+        ahead = [at for at in range(tick, LAST) if at == tick or free[at] != free[at - 1]]
         starts = [at for at in ahead if free[at]]
-        ends = [next((end for end in range(at, last) if not free[end]), None) for at in starts]
+        ends = [next((end for end in range(at, LAST) if not free[end]), None) for at in starts]
         began = max((at + 1 for at in range(tick) if not free[at]), default=0)
         expected = [Window(began if at == tick else at, end) for at, end in zip(starts, ends, strict=True)]
         assert list(traffic.windows("b", tick)) == expected
