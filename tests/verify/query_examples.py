@@ -100,6 +100,9 @@ QUESTIONS = {
     "in the way": beside(
         VANISHING, "r", WESTWARDS, plan_of("r", ("a", 0, 4), ("b", 4, 5), ("c", 5, 7), ("d", 7, 8)), now=4
     ),
+    "in the way before it left": beside(
+        VANISHING, "r", WESTWARDS, plan_of("r", ("a", 0, 5), ("b", 5, 6), ("c", 6, 8), ("d", 8, 9)), now=5
+    ),
     "at its goal": beside(HOME, "r"),
     "may leave its goal now": beside(HOME, "r", now=1),
     "stayed too long at its goal": beside(
