@@ -151,6 +151,13 @@ QUESTIONS |= {
         "r",
         plan_of("s", ("d", 11, 12), ("c", 12, 14), ("b", 14, 15), ("a", 15, 16)),
     ),
+    "stayed too long at the last stop": beside(
+        town("vanish", replace(SHUTTLE, stops=(Stop("a", 2), Stop("d"))), replace(WEST, release=20)),
+        "r",
+        plan_of("s", ("d", 20, 21), ("c", 21, 23), ("b", 23, 24), ("a", 24, 25)),
+        plan_of("r", ("a", 0, 2), ("b", 2, 3), ("c", 3, 5), ("d", 5, 9), ("c", 9, 11), ("d", 11, 12)),
+        now=7,
+    ),
     "a stop out of reach": beside(town("vanish", replace(SHUTTLE, start="b"), WEST, directed=True), "r"),
     "a long service at the goal": beside(
         town("vanish", replace(EAST, stops=(Stop("d", 6),)), replace(WEST, release=8)),

@@ -81,7 +81,7 @@ def _changed(layer: ServedLayer, data: st.DataObject) -> ServedLayer:
     )
 
 
-@pytest.mark.parametrize("name", [*QUESTIONS][-8:])
+@pytest.mark.parametrize("name", [*QUESTIONS][-9:])
 def test_of_a_certificate_over_stops_nothing_can_be_left_out_or_changed(name: str) -> None:
     """A label is needed, a lower potential proves less and a higher one would prove too much."""
     question = QUESTIONS[name]
