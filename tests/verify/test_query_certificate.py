@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import msgspec
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from tests.spec.making import plan_of
 from tests.verify.query_examples import EAST, QUESTIONS, VANISHING, WESTWARDS, Question, beside, fleets, town
@@ -127,6 +127,9 @@ WAYS = st.lists(st.tuples(st.integers(0, 12), TICKS | st.none(), TICKS | st.none
 LAST = 30
 
 
+@example([(2, 2, 4, False), (5, 3, 3, True)], 1, 2, "allowed")  # b is full from the tick on at which the group is not
+@example([(2, 2, 4, False), (5, 2, 3, True)], 1, 2, "allowed")  # and before that
+@example([(2, 2, 2, False)], 2, 2, "forbidden")  # who goes on within the group takes up its room once
 @given(WAYS, st.integers(1, 3), st.none() | st.integers(1, 3), st.sampled_from(("allowed", "forbidden")))
 def test_the_free_windows_are_those_of_counting_robots_tick_by_tick(
     ways: Sequence[tuple[int, int | None, int | None, bool]], capacity: int, together: int | None, following: Following
