@@ -38,8 +38,8 @@ ENOUGH = 32
 """With fewer rounds a robot than this the raises are smaller by as much: there is no time to make up for them."""
 PARTS = 1 << 10
 """The time left is counted in parts of this."""
-LEAST_ENDING, MOST_ENDING = 32, 8
-"""At the end, plans are settled, which takes about as long as a round for each robot.
+ENDING, LEAST_ENDING, MOST_ENDING = 4, 32, 8
+"""At the end, plans are settled, which takes up to about as long as so many rounds for each robot.
 
 At least one of so many parts of the time is left for it, and at most another.
 """
@@ -129,7 +129,8 @@ def anneal(
         polishing.fields.counts[CHANCE] = _chance(heated, len(instance.robots), expected, PARTS - gone)
         batch = fleet.polish(polishing, rounds)
         played += batch
-        ending = min(max(len(instance.robots) * (clock() - started) / max(played, 1), ending), seconds / MOST_ENDING)
+        settling = ENDING * len(instance.robots) * (clock() - started) / max(played, 1)
+        ending = min(max(settling, ending), seconds / MOST_ENDING)
         own = min(own, fleet.worth)
         if own < best:
             best, plans = own, fleet.plans
