@@ -112,7 +112,7 @@ QUESTIONS = {
 
 
 SHUTTLE = Robot("r", "a", stops=(Stop("c", 5), Stop("a"), Stop("d", 4)))
-QUESTIONS |= {
+OVER_STOPS = {
     "over stops": beside(town("vanish", SHUTTLE, WEST), "r", WESTWARDS),
     "over stops, to park": beside(
         town("park", SHUTTLE, replace(WEST, stops=(Stop("e"),))),
@@ -165,6 +165,7 @@ QUESTIONS |= {
         plan_of("s", ("d", 8, 9), ("c", 9, 11), ("b", 11, 12), ("a", 12, 13)),
     ),
 }
+QUESTIONS |= OVER_STOPS
 
 
 def fleets(question: Question) -> Iterator[Question]:

@@ -8,7 +8,17 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 from tests.spec.making import plan_of
-from tests.verify.query_examples import EAST, QUESTIONS, VANISHING, WESTWARDS, Question, beside, fleets, town
+from tests.verify.query_examples import (
+    EAST,
+    OVER_STOPS,
+    QUESTIONS,
+    VANISHING,
+    WESTWARDS,
+    Question,
+    beside,
+    fleets,
+    town,
+)
 
 import carp_optimized.certifying
 import carp_reference
@@ -81,7 +91,7 @@ def _changed(layer: ServedLayer, data: st.DataObject) -> ServedLayer:
     )
 
 
-@pytest.mark.parametrize("name", [*QUESTIONS][-9:])
+@pytest.mark.parametrize("name", OVER_STOPS)
 def test_of_a_certificate_over_stops_nothing_can_be_left_out_or_changed(name: str) -> None:
     """A label is needed, a lower potential proves less and a higher one would prove too much."""
     question = QUESTIONS[name]

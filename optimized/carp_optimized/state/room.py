@@ -37,11 +37,11 @@ def with_labels(stops: Stops, windows: int, edges: int) -> Stops:
         return stops
     labels, entries = stops.stride * windows, stops.stride * (windows // 4 + edges + 1)
     return stops._replace(
-        reached=np.zeros(labels, np.int64),
-        parent=np.zeros(labels, np.int32),
-        keys=np.zeros(entries, np.int64),
-        ties=np.zeros(entries, np.int64),
-        labels=np.zeros(entries, np.int32),
+        reached=_longs(labels),
+        parent=_ints(labels),
+        keys=_longs(entries),
+        ties=_longs(entries),
+        labels=_ints(entries),
     )
 
 
@@ -52,9 +52,9 @@ def no_guides(resources: int, goals: Ints, paces: Ints, has_ranks: bool, stops: 
     return Guides(
         ticks=np.empty((slots, resources), np.int32),
         rank=np.empty((slots, resources if has_ranks else 0), np.int32),
-        slot=np.full(goals.size, NONE, np.int32),
-        holds=np.full(slots, NONE, np.int32),
-        next=np.zeros(1, np.int64),
+        slot=_nones(goals.size),
+        holds=_nones(slots),
+        next=_longs(1),
         goal=goals,
         pace=paces,
         detour=DETOUR,
@@ -64,9 +64,9 @@ def no_guides(resources: int, goals: Ints, paces: Ints, has_ranks: bool, stops: 
 def empty_rows(has_row: npt.NDArray[np.bool_], filled: bool, places: int) -> Rows:
     """Rows of the resources that have one, filled with one interval for ever or empty; the first block is no row's."""
     rows = int(has_row.sum())
-    offset = np.zeros(has_row.size, np.int32)
+    offset = _ints(has_row.size)
     offset[has_row] = BLOCK * (1 + np.arange(rows))
-    resource = np.zeros(places, np.int32)
+    resource = _ints(places)
     resource[BLOCK : BLOCK * (1 + rows)] = np.repeat(np.flatnonzero(has_row), BLOCK)
     start = np.full(places, NEVER, np.int32)
     if filled:
@@ -77,9 +77,9 @@ def empty_rows(has_row: npt.NDArray[np.bool_], filled: bool, places: int) -> Row
         size=np.full(has_row.size, int(filled), np.int32),
         start=start,
         end=np.full(places, NEVER, np.int32),
-        source=np.full(places, NONE, np.int32),
-        robot=np.full(places, NONE, np.int32),
-        rank=np.full(places, NONE, np.int32),
+        source=_nones(places),
+        robot=_nones(places),
+        rank=_nones(places),
         resource=resource,
         used=np.array([BLOCK * (1 + rows)], np.int64),
     )
@@ -89,58 +89,51 @@ def no_search(windows: int, edges: int) -> Search:
     """The scratch of a query over that many window slots."""
     entries = windows // 4 + edges + 1
     return Search(
-        generation=np.zeros(1, np.int64),
-        goal=np.zeros(1, np.int64),
-        reached=np.zeros(windows, np.int64),
-        parent=np.zeros(windows, np.int32),
-        keys=np.zeros(entries, np.int64),
-        nodes=np.zeros(entries, np.int32),
-        expanded=np.zeros(entries, np.int32),
-        ready=np.zeros(entries, np.int32),
-        popped=np.zeros(entries, np.int64),
-        expansions=np.zeros(1, np.int64),
+        generation=_longs(1),
+        goal=_longs(1),
+        reached=_longs(windows),
+        parent=_ints(windows),
+        keys=_longs(entries),
+        nodes=_ints(entries),
+        expanded=_ints(entries),
+        ready=_ints(entries),
+        popped=_longs(entries),
+        expansions=_longs(1),
         ending=Ending(
-            gathered=np.zeros(MOST_GATHERED, np.int32),
-            place=np.zeros(windows, np.int32),
-            reached=np.zeros(MOST_GATHERED, np.int64),
-            parent=np.zeros(MOST_GATHERED, np.int32),
-            until=np.zeros(MOST_GATHERED, np.int32),
-            is_due=np.zeros(MOST_GATHERED, np.int32),
-            trace=np.zeros(MOST_GATHERED, np.int64),
-            until_by_window=np.zeros(windows, np.int64),
-            counts=np.zeros(3, np.int64),
-            keys=np.zeros(entries, np.int64),
-            nodes=np.zeros(entries, np.int32),
+            gathered=_ints(MOST_GATHERED),
+            place=_ints(windows),
+            reached=_longs(MOST_GATHERED),
+            parent=_ints(MOST_GATHERED),
+            until=_ints(MOST_GATHERED),
+            is_due=_ints(MOST_GATHERED),
+            trace=_longs(MOST_GATHERED),
+            until_by_window=_longs(windows),
+            counts=_longs(3),
+            keys=_longs(entries),
+            nodes=_ints(entries),
         ),
     )
 
 
 def no_records(records: int, visits: int, expansions: int) -> Records:
     """Room for records."""
-
-    def ints(size: int) -> Ints:
-        return np.zeros(size, np.int32)
-
-    def longs(size: int) -> Longs:
-        return np.zeros(size, np.int64)
-
     return Records(
-        robot=ints(records),
-        visits_at=longs(records),
-        visits=ints(records),
-        leave=ints(records),
-        arrival=ints(records),
-        expansions_at=longs(records),
-        expansions=ints(records),
-        regions=longs(records),
+        robot=_ints(records),
+        visits_at=_longs(records),
+        visits=_ints(records),
+        leave=_ints(records),
+        arrival=_ints(records),
+        expansions_at=_longs(records),
+        expansions=_ints(records),
+        regions=_longs(records),
         spots=np.zeros((records, 8), np.int64),
-        resource=ints(visits),
-        enter=ints(visits),
-        expanded=ints(expansions),
-        ready=ints(expansions),
-        until=ints(expansions),
-        largest=longs(expansions),
-        used=longs(3),
+        resource=_ints(visits),
+        enter=_ints(visits),
+        expanded=_ints(expansions),
+        ready=_ints(expansions),
+        until=_ints(expansions),
+        largest=_longs(expansions),
+        used=_longs(3),
     )
 
 
@@ -148,13 +141,13 @@ def nothing_freed(resources: int) -> Freed:
     """No stay has been taken back."""
     return Freed(
         now=np.ones(1, np.int64),
-        mark=np.zeros(resources, np.int64),
-        earliest=np.zeros(resources, np.int32),
-        latest=np.zeros(resources, np.int32),
-        source=np.zeros(resources, np.int32),
+        mark=_longs(resources),
+        earliest=_ints(resources),
+        latest=_ints(resources),
+        source=_ints(resources),
         near_earliest=np.full(resources, NEVER, np.int32),
-        near_latest=np.zeros(resources, np.int32),
-        regions=np.zeros(1, np.int64),
+        near_latest=_ints(resources),
+        regions=_longs(1),
     )
 
 
@@ -174,98 +167,96 @@ def no_sweep(graph: Graph) -> Sweep:
     """The scratch for stays in groups."""
     most = 1 + int(np.diff(graph.groups_first).max(initial=0))
     return Sweep(
-        into=np.zeros(most, np.int32),
-        out=np.zeros(most, np.int32),
-        mark=np.zeros(graph.capacity.size, np.int64),
-        now=np.zeros(1, np.int64),
+        into=_ints(most),
+        out=_ints(most),
+        mark=_longs(graph.capacity.size),
+        now=_longs(1),
     )
 
 
 def no_work(robots: int, members: int, sample: int) -> Work:
     """Room to add robots with neighbourhoods of that many members and that many orders drawn."""
-
-    def ints(size: int) -> Ints:
-        return np.full(size, NONE, np.int32)
-
-    def longs(size: int) -> Longs:
-        return np.zeros(size, np.int64)
-
     return Work(
-        queue=ints(robots),
+        queue=_nones(robots),
         stream=np.zeros(1, np.uint64),
-        before=ints(robots),
-        ended=ints(robots),
-        held=ints(robots),
-        trajectories=ints(robots),
+        before=_nones(robots),
+        ended=_nones(robots),
+        held=_nones(robots),
+        trajectories=_nones(robots),
         spots=np.zeros((8, robots), np.int64),
-        away=longs(robots),
-        near=longs(robots),
-        outside=ints(robots),
-        best_order=ints(robots),
-        best_plans=ints(robots),
-        members=ints(members),
-        alone=ints(members),
-        found_order=ints(members),
-        found_plans=ints(members),
-        order=ints(members),
-        chosen=ints(members),
-        least=longs(members),
-        given=longs(members + 1),
-        cost=longs(members + 1),
+        away=_longs(robots),
+        near=_longs(robots),
+        outside=_nones(robots),
+        best_order=_nones(robots),
+        best_plans=_nones(robots),
+        members=_nones(members),
+        alone=_nones(members),
+        found_order=_nones(members),
+        found_plans=_nones(members),
+        order=_nones(members),
+        chosen=_nones(members),
+        least=_longs(members),
+        given=_longs(members + 1),
+        cost=_longs(members + 1),
         rows=np.zeros((sample, members), np.int32),
-        row_key=longs(sample),
-        row_index=ints(sample),
-        row_spare=ints(sample),
+        row_key=_longs(sample),
+        row_index=_nones(sample),
+        row_spare=_nones(sample),
     )
 
 
 def no_polish(costs: Longs, resources: int) -> Polish:
     """Room to polish, with the costs of the plans that the robots have alone, `NONE` for one without."""
     has_path = costs != NONE
-
-    def ints(size: int) -> Ints:
-        return np.full(size, NONE, np.int32)
-
-    def longs(size: int) -> Longs:
-        return np.zeros(size, np.int64)
-
     return Polish(
-        queue=ints(costs.size),
-        plans=ints(costs.size),
-        counts=longs(7),
+        queue=_nones(costs.size),
+        plans=_nones(costs.size),
+        counts=_longs(7),
         stream=np.zeros(1, np.uint64),
         alone=np.where(has_path, np.int32(UNASKED), np.int32(NONE)),
         least=np.maximum(costs, 0),
         has_path=int(has_path.sum()),
-        mark=longs(resources),
-        first=ints(resources),
-        last=ints(resources),
-        marked=ints(resources),
-        candidates=ints(max(costs.size, MOST_TURNS)),
-        whole=longs(MOST_TURNS),
-        rest=longs(MOST_TURNS),
-        ticks=longs(MOST_TURNS),
-        members=ints(MOST_TURNS),
-        before=ints(MOST_TURNS),
-        chosen=ints(MOST_TURNS),
-        others=ints(costs.size),
+        mark=_longs(resources),
+        first=_nones(resources),
+        last=_nones(resources),
+        marked=_nones(resources),
+        candidates=_nones(max(costs.size, MOST_TURNS)),
+        whole=_longs(MOST_TURNS),
+        rest=_longs(MOST_TURNS),
+        ticks=_longs(MOST_TURNS),
+        members=_nones(MOST_TURNS),
+        before=_nones(MOST_TURNS),
+        chosen=_nones(MOST_TURNS),
+        others=_nones(costs.size),
     )
 
 
 def no_answers(members: int, resources: int) -> Answers:
     """Room for the answers of a round."""
     return Answers(
-        record=np.zeros(PLANS, np.int32),
-        owner=np.zeros(PLANS, np.int32),
-        clashes=np.zeros(PLANS, np.int64),
-        compared=np.zeros(PLANS, np.int64),
-        given=np.zeros(ANSWERS, np.int64),
-        plan=np.zeros(ANSWERS, np.int32),
-        least=np.zeros(ANSWERS, np.int64),
-        found=np.zeros(ANSWERS, np.int32),
-        newer=np.zeros(ANSWERS, np.int32),
-        oldest=np.zeros(members, np.int32),
-        newest=np.zeros(members, np.int32),
+        record=_ints(PLANS),
+        owner=_ints(PLANS),
+        clashes=_longs(PLANS),
+        compared=_longs(PLANS),
+        given=_longs(ANSWERS),
+        plan=_ints(ANSWERS),
+        least=_longs(ANSWERS),
+        found=_ints(ANSWERS),
+        newer=_ints(ANSWERS),
+        oldest=_ints(members),
+        newest=_ints(members),
         read=np.zeros((resources, 8), np.int64),
-        used=np.zeros(3, np.int64),
+        used=_longs(3),
     )
+
+
+def _ints(size: int) -> Ints:
+    return np.zeros(size, np.int32)
+
+
+def _longs(size: int) -> Longs:
+    return np.zeros(size, np.int64)
+
+
+def _nones(size: int) -> Ints:
+    return np.full(size, NONE, np.int32)
