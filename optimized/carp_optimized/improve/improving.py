@@ -10,9 +10,8 @@ from carp_optimized.improve.rounds import (
     BEST,
     CHANCE,
     DIRTY,
-    FIRST_WEIGHT,
+    FIRST_WEIGHTS,
     FULL,
-    KINDS,
     MISSED,
     MOST_MEMBERS,
     ROUNDS,
@@ -25,7 +24,7 @@ from carp_optimized.improve.rounds import (
     play,
     put_all,
 )
-from carp_optimized.improve.sipp import no_query
+from carp_optimized.improve.sipp import GREED, no_query
 from carp_optimized.improve.stays import Paths, no_paths, no_stays, with_more_room
 from carp_optimized.jit.kinds import Ints, IntTable
 from carp_optimized.jit.references import Native
@@ -61,7 +60,7 @@ class Improving:
             mark=np.zeros(robots, np.int32),
             changed=np.zeros(robots, np.int32),
             is_changed=np.zeros(robots, np.int32),
-            weight=np.full(KINDS, FIRST_WEIGHT, np.int64),
+            weight=np.array(FIRST_WEIGHTS, np.int64),
             counts=np.zeros(10, np.int64),
             stream=np.array([seed], np.uint64),
         )
@@ -127,19 +126,22 @@ class Improving:
         self._make_room()
         return 0
 
-    def plan_each(self, order: Ints, goes_on: Callable[[], bool]) -> None:
+    def plan_each(self, order: Ints, goes_on: Callable[[], bool], greed: int) -> None:
         """Plan the robots again, one after the other."""
+        self.rounds.query.counts[GREED] = greed
         self._go_through(plan_each, order, goes_on)
 
-    def plan_first(self, order: Ints, goes_on: Callable[[], bool]) -> None:
+    def plan_first(self, order: Ints, goes_on: Callable[[], bool], greed: int) -> None:
         """Plan robots that have no paths yet, one after the other, those that find none left out."""
+        self.rounds.query.counts[GREED] = greed
         self._go_through(plan_first, order, goes_on)
 
-    def make_way(self, goes_on: Callable[[int], bool]) -> Paths:
+    def make_way(self, goes_on: Callable[[int], bool], greed: int) -> Paths:
         """Plan robots that have no paths, others again that were in their way; `goes_on` gets the number that wait.
 
         Returns the paths when the fewest waited.
         """
+        self.rounds.query.counts[GREED] = greed
         missing = np.flatnonzero(self.rounds.paths.size == 0)
         waiting = np.zeros(self.rounds.paths.size.size, np.int32)
         waiting[: missing.size] = missing
@@ -167,7 +169,8 @@ class Improving:
 
     def _make_room(self) -> None:
         stays = with_more_room(self.rounds.stays)
-        self.rounds = self.rounds._replace(stays=stays, query=no_query(stays))
+        query = no_query(stays)._replace(counts=self.rounds.query.counts)
+        self.rounds = self.rounds._replace(stays=stays, query=query)
         self._native = Native(self.rounds)
 
 

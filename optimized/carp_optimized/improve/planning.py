@@ -1,12 +1,12 @@
 """Plans of a crowd in a given time or a number of rounds: the best that can be had (anytime search).
 
 First come plans by LaCAM, and by prioritized planning with the shortest way first: robots that arrive early park early,
-and those that come later go around them. Who finds no path takes a shortest way, and those that it meets are planned
-again. Where that leads nowhere, LaCAM follows guides; where that does not end, as many robots as possible are planned
-one after the other. Then rounds improve the best ones. They may raise the sum for a
-while (simulated annealing, Kirkpatrick et al. 1983): on average by a share of a robot's mean delay, which falls to 0 as
-the cube of what is left of the cycle. There are several cycles, each from the best paths so far. Where there is time
-for many rounds, each path is one of those that arrive equally early.
+and those that come later go around them. Its queries are greedy at first, and then less so if there is time. Who finds
+no path takes a shortest way, and those that it meets are planned again. Where that leads nowhere, LaCAM follows guides;
+where that does not end, as many robots as possible are planned one after the other. Then rounds improve the best ones.
+They may raise the sum for a while (simulated annealing, Kirkpatrick et al. 1983): on average by a share of a robot's
+mean delay, which falls to 0 as the cube of what is left of the cycle. There are several cycles, each from the best
+paths so far. Where there is time for many rounds, each path is one of those that arrive equally early.
 
 The better start may be a trap: where robots with short ways went first through a narrow place, crowds wait behind them,
 and no few robots can change that. Plans by LaCAM have no such order. So most cycles begin from the worse start, unless
@@ -30,7 +30,7 @@ from carp_optimized.improve.crowds import FAR, Crowd, are_apart, crowd_of, is_st
 from carp_optimized.improve.guides import guides_of
 from carp_optimized.improve.improving import LONGER, Improving, arrivals, paths_of
 from carp_optimized.improve.lacam import RUNNING, STEPS, Search
-from carp_optimized.improve.rounds import SURE
+from carp_optimized.improve.rounds import GREEDY, SURE
 from carp_optimized.improve.stays import Paths, no_paths
 from carp_optimized.jit.kinds import IntTable
 from carp_optimized.jit.references import Native
@@ -55,8 +55,12 @@ If nothing has found plans for all, LaCAM goes on, and what is left is for prior
 """
 MISSES = 8
 """Prioritized planning gives up when robots have found no path this often, on average."""
-HOPE = 4
-"""From one of this many parts of its time on, it gives up if too many robots wait for what is left of it."""
+HOPE, MANY = 8, 8
+"""It gives up after one of `HOPE` parts of its time if it has missed more than one of `MANY` robots."""
+SOME, PATIENCE = 64, 3
+"""If a pass has missed at most one of `SOME` robots, so many times its time is for these."""
+LESS = ((0, 5), (GREEDY // 4, 2))
+"""Less greed than `GREEDY`, and how many times as long prioritized planning takes with it."""
 LONGEST = 700
 """The visits of a path by prioritized planning, if LaCAM has found none that shows how many they are."""
 CYCLES, LEAVING, CHOOSING = 8, 1, 7
@@ -245,7 +249,7 @@ def _nearest(crowd: Crowd, timer: Clock) -> Paths:
         if not timer.goes_on():
             break
         measure(native, part, 0, part.size, BEYOND)
-        improving.plan_first(part, timer.goes_on)
+        improving.plan_first(part, timer.goes_on, GREEDY)
         timer.reserve(int(improving.rounds.paths.size.sum()))
     return improving.rounds.paths
 
@@ -255,19 +259,44 @@ def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
     search = Search(crowd, seed)
     ways = _searched(search, STEPS, lambda: timer.goes_on(SEARCHING))
     by_steps = [] if ways is None else [paths_of(ways)]
-    in_order = _planned_in_order(crowd, timer, by_steps[0].place.shape[1] if by_steps else LONGEST, seed, SEARCHING)
-    if in_order.size.all():
-        return sorted([in_order, *by_steps], key=_sum)
+    in_order = _best_in_order(crowd, timer, by_steps, seed)
+    has_all = bool(in_order.size.all())
+    if has_all and _is_better(crowd, in_order, by_steps):
+        return [in_order, *by_steps]
     guides = guides_of(crowd, lambda: timer.goes_on(GUIDING))
     ways = _searched(Search(crowd, seed, guides), STEPS, lambda: timer.goes_on(GUIDED))
-    if ways is None and not by_steps:
+    if ways is None and not by_steps and not has_all:
         ways = _searched(search, STEPS if timer.seconds is None else NO_LIMIT, lambda: timer.goes_on(LAST))
     if ways is not None:
         by_steps.append(paths_of(ways))
-    if by_steps:
-        return sorted(by_steps, key=_sum)
-    later = _planned_in_order(crowd, timer, LONGEST, seed, ALL)
+    if has_all or by_steps:
+        return sorted([in_order, *by_steps] if has_all else by_steps, key=_sum)
+    later = _planned_in_order(crowd, timer, LONGEST, seed, ALL, GREEDY)
     return [max(in_order, later, key=lambda each: int(np.count_nonzero(each.size)))]
+
+
+def _best_in_order(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int) -> Paths:
+    """The better paths of greedy prioritized planning, and of less greedy one if there is time for it.
+
+    There is more time for what is likely to be much better than paths by LaCAM.
+    """
+    room = by_steps[0].place.shape[1] if by_steps else LONGEST
+    began = timer.spent
+    greedy = _planned_in_order(crowd, timer, room, seed, ALL if by_steps else SEARCHING, GREEDY)
+    took = timer.spent - began
+    is_better = bool(greedy.size.all()) and _is_better(crowd, greedy, by_steps)
+    until, share = (LAST, 1) if is_better else (SEARCHING, 4)
+    for greed, times in LESS:
+        if share * times * took < timer.left(until):
+            less = _planned_in_order(crowd, timer, room, seed, until, greed)
+            return min(less, greedy, key=lambda each: (np.count_nonzero(each.size == 0), _sum(each)))
+    return greedy
+
+
+def _is_better(crowd: Crowd, in_order: Paths, by_steps: Sequence[Paths]) -> bool:
+    """Whether the delays of paths by LaCAM are more than twice those of others."""
+    least = int(ways_of(crowd).sum())
+    return all(2 * (_sum(in_order) - least) < _sum(each) - least for each in by_steps)
 
 
 def _sum(paths: Paths) -> int:
@@ -282,21 +311,30 @@ def _searched(search: Search, steps: int, goes_on: Callable[[], bool]) -> IntTab
     return search.ways
 
 
-def _planned_in_order(crowd: Crowd, timer: Clock, room: int, seed: int, until: int) -> Paths:
+def _planned_in_order(crowd: Crowd, timer: Clock, room: int, seed: int, until: int, greed: int) -> Paths:
     """The paths of a pass of prioritized planning, and then of the robots that it missed, as long as they get fewer."""
     robots = crowd.start.size
     improving = Improving(crowd, no_paths(robots, room), seed)
-    improving.plan_first(np.argsort(ways_of(crowd), kind="stable").astype(np.int32), lambda: timer.goes_on(until))
+    begun, time = timer.spent, timer.left(until)
+
+    def goes_on(*, is_likely: bool) -> bool:
+        return timer.goes_on(until) and (is_likely or HOPE * (timer.spent - begun) < time)
+
+    order = np.argsort(ways_of(crowd), kind="stable").astype(np.int32)
+    improving.plan_first(order, lambda: goes_on(is_likely=MANY * improving.missed <= robots), greed)
     missing = int(np.count_nonzero(improving.rounds.paths.size == 0))
-    most = improving.missed + MISSES * robots
-    begun, left = timer.spent, timer.left(until)
+    last = improving.missed + MISSES * robots
+    patient = begun + PATIENCE * (timer.spent - begun) * (SOME * missing <= robots)
+    half, halved, halving = missing, begun, 0.0
 
-    def goes_on(waiting: int) -> bool:
-        spent = timer.spent - begun
-        is_soon = waiting * spent <= (missing - waiting) * (left - spent)
-        return improving.missed < most and timer.goes_on(until) and (HOPE * spent <= left or is_soon)
+    def gets_fewer(waiting: int) -> bool:
+        nonlocal half, halved, halving
+        if 2 * waiting <= half:
+            half, halved, halving = waiting, timer.spent, timer.spent - halved
+        is_soon = waiting.bit_length() * max(halving, timer.spent - halved) < timer.left(until)
+        return improving.missed < last and goes_on(is_likely=is_soon or timer.spent < patient)
 
-    return improving.make_way(goes_on)
+    return improving.make_way(gets_fewer, greed)
 
 
 def improved(
@@ -337,7 +375,7 @@ def _begun(crowd: Crowd, paths: Paths, timer: Clock, seed: int) -> list[Improvin
     if not improving.begin(timer.goes_on):
         return []
     delays = arrivals(paths) - improving.rounds.least
-    improving.plan_each(np.argsort(-delays, kind="stable").astype(np.int32), timer.goes_on)
+    improving.plan_each(np.argsort(-delays, kind="stable").astype(np.int32), timer.goes_on, GREEDY)
     return [improving]
 
 

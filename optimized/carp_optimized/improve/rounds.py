@@ -4,8 +4,9 @@ A round takes a few robots out, plans them one after the other by `carp_optimize
 if the sum of their arrivals is not above the sum before by more than a raise that is drawn (simulated annealing). The
 best paths seen are kept apart. A path is looked for only up to the arrival at which the sum could still be kept.
 
-There are kinds of neighbourhoods. Each is chosen by the share of its weight, which follows what its rounds gained for
-the work that they took (adaptive large neighbourhood search, Ropke and Pisinger 2006).
+There are kinds of neighbourhoods, and queries of more or less greed. Each is chosen by the share of its weight, which
+follows what its rounds gained for the work that they took (adaptive large neighbourhood search, Ropke and Pisinger
+2006).
 """
 
 from typing import NamedTuple
@@ -13,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carp_optimized.improve.crowds import Crowd
-from carp_optimized.improve.sipp import EXPANDED, TURN, Query, find_path
+from carp_optimized.improve.sipp import EXPANDED, GREED, TURN, WHOLE, Query, find_path
 from carp_optimized.improve.stays import Paths, Stays, arrival, copy_path, drop, later_than, put, robot_at
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints, Longs, Numbers
@@ -25,9 +26,14 @@ TOTAL, BEST, CHANCE, DIRTY, MARK, SIZE, WORK, ROUNDS, MISSED, TURNING = range(10
 SURE = 1 << 16  # a chance is in parts of this
 IN_WAY, CROSSING, TURNS, DRAWN = range(4)  # the kinds
 KINDS = 4
+GREEDY = WHOLE // 2
+DEGREES = 3  # of greed: none, `GREEDY`, and four times that
 OWN_WAY, OTHER_WAYS, HALF = range(3)  # the robots that go first, of four choices; else none does
 MOST_MEMBERS = 16
-LEAST_WEIGHT, FIRST_WEIGHT = 1 << 8, 1 << 16
+LEAST_WEIGHT, LEAST_OF_DEGREES = 1 << 8, 1 << 4
+SHIFT = 16
+FIRST_WEIGHTS = KINDS * (1 << 16,) + (1 << 10, 1 << 12, 1 << 12)
+"""Of the kinds, and of the degrees: queries without greed may take much longer."""
 GAIN = 1 << 20  # a gain of one tick for one unit of work adds this to a weight
 MEMORY = 64  # rounds over which a weight is about the mean
 WALKS = 10
@@ -133,6 +139,8 @@ def put_all(native: Native[Rounds], begin: int, end: int) -> int:
 def play_round(state: Rounds) -> bool:
     """Take out a neighbourhood and replan it; `False` if a row of stays is full."""
     kind = choose_kind(state)
+    degree = choose_by_weight(state, KINDS, DEGREES)
+    state.query.counts[GREED] = GREEDY * (degree - KINDS) ** 2
     state.counts[MARK] += 1
     state.counts[SIZE] = 0
     size = 2 + choice(state.stream, 9)
@@ -154,9 +162,16 @@ def play_round(state: Rounds) -> bool:
     work = 100 * int(state.counts[SIZE]) + int(state.query.counts[EXPANDED]) - begun
     state.counts[WORK] += work
     gain = max(before - int(state.counts[TOTAL]), 0) * GAIN // work
-    state.weight[kind] += (gain - int(state.weight[kind])) // MEMORY
-    state.weight[kind] = max(int(state.weight[kind]), LEAST_WEIGHT)
+    update_weight(state, kind, gain, LEAST_WEIGHT)
+    update_weight(state, degree, (gain << SHIFT) // work, LEAST_OF_DEGREES)
     return True
+
+
+@compiled
+def update_weight(state: Rounds, which: int, gain: int, least: int) -> None:
+    """Let a weight follow what a round gained."""
+    after = int(state.weight[which]) + (gain - int(state.weight[which])) // MEMORY
+    state.weight[which] = max(after, least)
 
 
 @compiled
@@ -164,15 +179,21 @@ def choose_kind(state: Rounds) -> int:
     """Choose a kind: one of all in one round of four, else by the weights."""
     if choice(state.stream, 4) == 0:
         return choice(state.stream, KINDS)
+    return choose_by_weight(state, 0, KINDS)
+
+
+@compiled
+def choose_by_weight(state: Rounds, first: int, among: int) -> int:
+    """Choose one of that many, from the first on, by the share of its weight."""
     total = 0
-    for kind in range(KINDS):
-        total += int(state.weight[kind])
+    for which in range(first, first + among):
+        total += int(state.weight[which])
     left = choice(state.stream, total)
-    for kind in range(KINDS):
-        left -= int(state.weight[kind])
+    for which in range(first, first + among):
+        left -= int(state.weight[which])
         if left < 0:
-            return kind
-    return 0
+            return which
+    return first
 
 
 @compiled

@@ -4,7 +4,8 @@ A gap between two stays of a resource is a safe interval. Gap k of a resource co
 the place of that stay in the arrays. A robot that reaches a gap earlier can do all that one who comes later can, so the
 earliest arrival in each gap is enough. Arrivals are looked at in the order of the ticks at which they could reach the
 goal, and the latest found first among equals: with steps of one tick these bounds are small whole numbers, so they have
-buckets.
+buckets. A greedy query adds a share of the way that is left (weighted A*, Pohl 1970). Its paths are later, but it looks
+at far fewer gaps where robots wait for each other, as no bound knows of waits.
 
 Of paths that arrive equally early, the order of the edges chooses one. A turn of that order chooses another.
 
@@ -25,11 +26,16 @@ BUCKETS = 1 << 14
 """Paths that arrive later than the first bound by more ticks than this are not found."""
 PLACES = 7
 """Places that differ in these bits have their edges turned by other bits of the turn."""
-GENERATION, LABELS, TOP, EXPANDED, TURN = range(5)  # the counts
+GENERATION, LABELS, LEAST, TOP, EXPANDED, TURN, GREED = range(7)  # the counts
+WHOLE = 16
+"""The greed of a query that adds the whole way that is left."""
 
 
 class Query(NamedTuple):
-    """The scratch of a query: for each gap its arrival and the gap before, if it is marked; and the labels by bound."""
+    """The scratch of a query: for each gap its arrival and the gap before, if it is marked; and the labels by bound.
+
+    The buckets with labels are among those from `counts[LEAST]` to `counts[TOP]`.
+    """
 
     mark: Ints
     arrive: Ints
@@ -53,13 +59,13 @@ def no_query(stays: Stays) -> Query:
         gap=np.empty(labels, np.int32),
         tick=np.empty(labels, np.int32),
         later=np.empty(labels, np.int32),
-        counts=np.zeros(5, np.int64),
+        counts=np.zeros(7, np.int64),
     )
 
 
 @compiled
 def find_path(crowd: Crowd, stays: Stays, query: Query, robot: int, latest: int, paths: Paths, row: int) -> bool:
-    """Write the path with the earliest arrival into the row; `False` if there is none by the tick `latest`."""
+    """Write a path into the row, without greed the earliest one; `False` if there is none by the tick `latest`."""
     start = int(crowd.start[robot])
     goal = int(crowd.goal[robot])
     first = int(stays.first[start])
@@ -73,14 +79,15 @@ def find_path(crowd: Crowd, stays: Stays, query: Query, robot: int, latest: int,
     latest = min(latest, least + BUCKETS - 1)
     query.counts[GENERATION] += 1
     query.counts[LABELS] = 0
+    query.counts[LEAST] = BUCKETS
     query.counts[TOP] = 0
-    reach(query, first, 0, NONE, 0)
+    reach(query, first, 0, NONE, bucket_of(query, 0, int(crowd.distance[robot][start])))
     found = NONE
-    bucket = 0
-    while bucket <= query.counts[TOP]:
+    while query.counts[LEAST] <= query.counts[TOP]:
+        bucket = int(query.counts[LEAST])
         label = int(query.head[bucket])
         if label == NONE:
-            bucket += 1
+            query.counts[LEAST] += 1
             continue
         query.head[bucket] = query.later[label]
         gap = int(query.gap[label])
@@ -92,7 +99,7 @@ def find_path(crowd: Crowd, stays: Stays, query: Query, robot: int, latest: int,
         query.counts[EXPANDED] += 1
         if not expand(crowd, stays, query, robot, gap, least, latest):
             break
-    for k in range(bucket, int(query.counts[TOP]) + 1):
+    for k in range(int(query.counts[LEAST]), int(query.counts[TOP]) + 1):
         query.head[k] = NONE
     return found != NONE and write_path(stays, query, found, paths, row)
 
@@ -135,9 +142,15 @@ def expand(crowd: Crowd, stays: Stays, query: Query, robot: int, gap: int, least
             if tick < end and not swaps and (not is_marked or tick < query.arrive[into]):
                 if query.counts[LABELS] == query.gap.size:
                     return False
-                reach(query, into, tick, gap, bound - least)
+                reach(query, into, tick, gap, bucket_of(query, bound - least, rest))
             into += 1
     return True
+
+
+@compiled
+def bucket_of(query: Query, late: int, rest: int) -> int:
+    """The bucket of a label whose bound is that late, with so much left of the way; the last one if it is too large."""
+    return min(late + int(query.counts[GREED]) * rest // WHOLE, BUCKETS - 1)
 
 
 @compiled
@@ -152,6 +165,7 @@ def reach(query: Query, gap: int, tick: int, before: int, bucket: int) -> None:
     query.tick[label] = tick
     query.later[label] = query.head[bucket]
     query.head[bucket] = label
+    query.counts[LEAST] = min(int(query.counts[LEAST]), bucket)
     query.counts[TOP] = max(int(query.counts[TOP]), bucket)
 
 
