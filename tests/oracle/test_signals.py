@@ -1,5 +1,6 @@
 """SIGINT and SIGTERM end every command at once with 130 or 143, and nothing is left of it."""
 
+import itertools
 import os
 import signal
 import subprocess
@@ -26,7 +27,6 @@ MORE = [
     "plan town.json --planner shuffled --attempts 1000000 -o out.json",
     "gap town.json --limit 600",
     "check --z3 large.json large-plans.json",
-    "theorems",
     "dev bench",
     "dev crosscheck",
     "audit large.json large-plans.json --engine reference",
@@ -34,7 +34,6 @@ MORE = [
     "conform --examples 100000 -- {carproof} serve",
     "experiment quality --quick --store quality.sqlite --workers 2",
 ]
-LONG = [each for each in MORE if each != "theorems"]
 TWO_CORES = sys.platform == "linux" and len(os.sched_getaffinity(0)) > 1
 
 
@@ -103,7 +102,7 @@ def test_a_signal_ends_a_command_with_all_that_it_started(command: str, number: 
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize(("command", "seconds"), [*((each, 0.1) for each in MORE), *((each, 0.3) for each in LONG)])
+@pytest.mark.parametrize(("command", "seconds"), itertools.product(MORE, (0.1, 0.3)))
 def test_a_signal_ends_every_long_command(command: str, number: signal.Signals, seconds: float, town: Path) -> None:
     interrupted(command, number, town, seconds)
 
