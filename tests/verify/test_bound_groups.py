@@ -79,6 +79,26 @@ def test_who_is_seen_in_a_place_on_the_way_pays_for_it_once(data: st.DataObject,
     assert least_cost_of(tariff, robot, SCALE, fees) == min(costs, default=None)
 
 
+def test_who_vanishes_drives_on_through_its_goal_where_nothing_else_makes_it_late() -> None:
+    """It pays 20 to come by tick 3, and 9 for each tick of waiting: on to c and back to b costs 2 ticks more."""
+    lane = Instance(
+        ResourceGraph((Resource("a"), Resource("b"), Resource("c")), (("a", "b"), ("b", "c"))),
+        (Robot("r", "a", "b"),),
+        after_goal="vanish",
+    )
+    waits = tuple(("a", tick, 9) for tick in range(1, HORIZON))
+    tariff = Tariff(lane, BoundDocument(BOUND_FORMAT, digest(lane), 0, 1, HORIZON, waits, (), (), ()))
+    assert [least_cost_of(tariff, lane.robots[0], 1, Fees([(tick, 20)])) for tick in (0, 1, 2, 3)] == [1, 3, 3, 4]
+
+
+def test_who_waits_pays_for_the_ticks_of_its_waiting_alone() -> None:
+    lane = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
+    keep_away = BoundDocument(BOUND_FORMAT, digest(lane), 0, 1, HORIZON, (("b", 1, 9),), (), (), ())
+    for tick, least in ((0, 2 + 5), (1, 2 + 5), (2, 2), (3, 2)):
+        fees = Fees([(0, 0)], [(tick, {"a"}, 5)])
+        assert least_cost_of(Tariff(lane, keep_away), lane.robots[0], 1, fees) == least, tick
+
+
 def test_deadlines_find_what_prices_alone_miss_and_carry_their_proofs() -> None:
     instance = crossing()
     certificate = lower_bound(instance, steps=4500)

@@ -124,6 +124,32 @@ def test_a_robot_without_a_way_is_named_and_left_out() -> None:
             verify_bound(instance, msgspec.structs.replace(certificate, robots=wrong))
 
 
+@pytest.mark.parametrize(
+    ("start", "goal"), [("behind", "far"), ("near", "before"), ("behind", "before"), ("far", "near")]
+)
+def test_that_others_reach_a_goal_or_leave_a_start_is_no_way_between_them(start: str, goal: str) -> None:
+    """All distances from and to the places that the first robot reaches are known to the checker."""
+    cells = tuple(Resource(name) for name in ("before", "near", "far", "behind"))
+    edges = (("before", "near"), ("near", "far"), ("far", "behind"))
+    robots = (Robot("first", "near", "far"), Robot("lost", start, goal))
+    instance = Instance(ResourceGraph(cells, edges, directed=True), robots)
+    certificate = BoundDocument(BOUND_FORMAT, digest(instance), 1, 1, 0, (), (), (), (("first", 1), ("lost", None)))
+    assert verify_bound(instance, certificate) == 1
+    claimed = msgspec.structs.replace(certificate, bound=101, robots=(("first", 1), ("lost", 100)))
+    with pytest.raises(Refusal, match="robot lost can have no more than None") as refused:
+        verify_bound(instance, claimed)
+    assert refused.value.rule == "bound/robots"
+
+
+def test_an_instance_that_breaks_a_rule_has_no_bound() -> None:
+    cells = (Resource("a"), Resource("b", capacity=0))
+    instance = Instance(ResourceGraph(cells, (("a", "b"),)), (Robot("r", "a", "b"),))
+    certificate = BoundDocument(BOUND_FORMAT, "0" * 64, 2, 1, 0, (), (), (), (("r", 2),))
+    with pytest.raises(Refusal) as refused:
+        verify_bound(instance, certificate)
+    assert refused.value.rule == "instance/capacity"
+
+
 def change(**fields: object) -> Tamper:
     return lambda certificate: msgspec.structs.replace(certificate, **fields)
 

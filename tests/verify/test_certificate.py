@@ -14,6 +14,7 @@ from carp_reference import plan
 from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Violation, Visit, violations_of
 from carp_spec.documents.instances import write_instance
 from carp_spec.documents.solutions import write_solution
+from carp_spec.model import Group
 from carp_spec.permutations import splitmix64
 from carp_verify import certificate
 from carp_verify.certificate import Breach, certify, certify_together
@@ -135,6 +136,47 @@ def test_teleports_second_plans_and_strangers_are_refused(plans: tuple[Plan, ...
     assert not certified.accepted
     assert [violation.rule for violation in certified.violations] == [rule]
     assert (certified.resources, certified.pairs, certified.breaches) == (0, 0, ())
+
+
+@pytest.mark.parametrize(
+    ("enter", "rules"), [(3, {"joint/capacity", "joint/following"}), (4, {"joint/following"}), (5, set())]
+)
+def test_who_comes_within_the_gap_is_refused_where_following_is_forbidden(enter: int, rules: set[str]) -> None:
+    instance = Instance(LINE, INSTANCE.robots, "vanish", following="forbidden")
+    plans = Plan("r1", (Visit("a", 0, 4),)), Plan("r2", (Visit("a", enter, 9),))
+    assert {each.rule for each in certify_together(instance, plans).breaches} == rules
+    agree(instance, plans)
+
+
+def test_robots_that_exchange_a_group_of_capacity_one_are_refused_wherever_in_it_they_are() -> None:
+    cells = tuple(Resource(name) for name in ("a", "left", "right", "b"))
+    moves = (("a", "left"), ("left", "right"), ("right", "b"), ("a", "right"))
+    one, other = (
+        Plan("r1", (Visit("left", 0, 1), Visit("a", 1, 2))),
+        Plan("r2", (Visit("a", 0, 1), Visit("right", 1, 2))),
+    )
+    robots = (Robot("r1", "left", "a"), Robot("r2", "a", "right"))
+    for groups, refused in (
+        ((), False),
+        ((Group("block", ("left", "right")),), True),
+        ((Group("block", ("left", "right"), 2),), False),
+        ((Group("other", ("b",)), Group("block", ("left", "right"))), True),
+    ):
+        instance = Instance(ResourceGraph(cells, moves, groups=groups), robots, "vanish")
+        breaches = certify_together(instance, (one, other)).breaches
+        assert [(each.rule, each.tick) for each in breaches] == [("joint/exchange", 1)] * refused
+        agree(instance, (one, other))
+
+
+def test_robots_in_a_group_are_named_with_a_resource_of_it_in_which_one_is_at_the_tick() -> None:
+    cells = tuple(Resource(name) for name in ("a", "left", "right", "b"))
+    graph = ResourceGraph(
+        cells, (("a", "left"), ("left", "right"), ("right", "b")), groups=(Group("g", ("left", "right")),)
+    )
+    one, other = Plan("r1", (Visit("left", 0, 2), Visit("right", 2, 5))), Plan("r2", (Visit("left", 4, 6),))
+    (breach,) = certify_together(Instance(graph, (), "vanish"), (one, other)).breaches
+    assert (breach.rule, breach.robots, breach.resource, breach.tick) == ("joint/group", ("r1", "r2"), "right", 4)
+    assert " of group g" in breach.reason
 
 
 def test_plans_that_follow_each_other_are_certified() -> None:
