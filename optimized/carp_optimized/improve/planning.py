@@ -2,14 +2,16 @@
 
 First come plans by LaCAM, and by prioritized planning with the shortest way first: robots that arrive early park early,
 and those that come later go around them. Its queries are greedy at first, and then less so if there is time. Who finds
-no path takes a shortest way, and those that it meets are planned again. Where that leads nowhere, LaCAM follows guides;
-where that does not end, as many robots as possible are planned one after the other. Then rounds improve the best ones.
+no path takes a shortest way, and those that it meets are planned again. Where that leads nowhere, or LaCAM's paths show
+that robots wait for longer than they drive, so that whoever goes last waits for all, LaCAM follows guides; where that
+does not end, as many robots as possible are planned one after the other. Then rounds improve the best ones.
 They may raise the sum for a while (simulated annealing, Kirkpatrick et al. 1983): on average by a share of a robot's
 mean delay, which falls to 0 as the cube of what is left of the cycle. There are several cycles, each from the best
 paths so far. Where there is time for many rounds, each path is one of those that arrive equally early.
 
 The better start may be a trap: where robots with short ways went first through a narrow place, crowds wait behind them,
-and no few robots can change that. Plans by LaCAM have no such order. So most cycles begin from the worse start, unless
+and no few robots can change that. Plans by LaCAM have no such order. So they come first if they are the better ones
+once each robot has been planned again, and most cycles begin from the worse start, unless
 there are too few rounds to come down from it, or so little room that LaCAM moves robots to and fro. The last cycle goes
 on from the best paths.
 
@@ -53,6 +55,8 @@ SEARCHING, GUIDING, GUIDED, LAST, ALL = 3, 4, 5, 6, 8
 
 If nothing has found plans for all, LaCAM goes on, and what is left is for prioritized planning of as many as possible.
 """
+CROWDED = 5
+"""Prioritized planning is left out where LaCAM's paths are this many halves of the shortest ways long, or more."""
 MISSES = 8
 """Prioritized planning gives up when robots have found no path this often, on average."""
 HOPE, MANY = 8, 8
@@ -232,7 +236,7 @@ def _paths(crowd: Crowd, timer: Clock, is_measured: bool, iterations: int | None
     else:
         starts = [_nearest(crowd, timer)]
     timer.reserve(max(int(each.size.sum()) for each in starts))
-    paths = starts[0]
+    paths = min(starts, key=_sum) if starts[0].size.all() else starts[0]
     if paths.size.all() and timer.goes_on():
         return improved(crowd, starts, iterations, timer, seed, advance)
     advance(0, int(np.count_nonzero(paths.size == 0)), int(arrivals(paths)[paths.size > 0].sum()))
@@ -255,11 +259,16 @@ def _nearest(crowd: Crowd, timer: Clock) -> Paths:
 
 
 def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
-    """First paths of all robots, the best ones first; those of as many as possible if nothing has all."""
+    """First paths of all robots, the more promising first; those of as many as possible if nothing has all.
+
+    Paths by LaCAM are more promising unless the others are much better.
+    """
     search = Search(crowd, seed)
     ways = _searched(search, STEPS, lambda: timer.goes_on(SEARCHING))
     by_steps = [] if ways is None else [paths_of(ways)]
-    in_order = _best_in_order(crowd, timer, by_steps, seed)
+    in_order = no_paths(crowd.start.size, 1)
+    if all(2 * _sum(each) < CROWDED * int(ways_of(crowd).sum()) for each in by_steps):
+        in_order = _best_in_order(crowd, timer, by_steps, seed)
     has_all = bool(in_order.size.all())
     if has_all and _is_better(crowd, in_order, by_steps):
         return [in_order, *by_steps]
@@ -270,7 +279,7 @@ def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
     if ways is not None:
         by_steps.append(paths_of(ways))
     if has_all or by_steps:
-        return sorted([in_order, *by_steps] if has_all else by_steps, key=_sum)
+        return sorted(by_steps, key=_sum)[: 1 if has_all else 2] + [in_order] * has_all
     later = _planned_in_order(crowd, timer, LONGEST, seed, ALL, GREEDY)
     return [max(in_order, later, key=lambda each: int(np.count_nonzero(each.size)))]
 
@@ -340,10 +349,16 @@ def _planned_in_order(crowd: Crowd, timer: Clock, room: int, seed: int, until: i
 def improved(
     crowd: Crowd, starts: Sequence[Paths], iterations: int | None, timer: Clock, seed: int, advance: Advance
 ) -> Paths:
-    """The best paths that rounds make of the first start, and in some cycles of another, if there is one."""
-    searches = _begun(crowd, starts[0], timer, seed)
+    """The best paths that rounds make of the better start, and in some cycles of the other one, if there is one.
+
+    The first start is the better one, unless the second still is after each robot has been planned again.
+    """
+    searches, other = _begun(crowd, starts[0], timer, seed), starts[1:2]
+    if searches and other and _sum(other[0]) < searches[0].best:
+        searches, other = _begun(crowd, other[0], timer, seed) + searches, []
+        searches.sort(key=lambda each: each.best, reverse=True)
     if not searches:
-        return starts[0]
+        return min(starts, key=_sum)
     robots = crowd.start.size
     least = int(ways_of(crowd).sum())
     current = 0
@@ -353,8 +368,9 @@ def improved(
         if cycle > current:
             current = cycle
             if cycle == LEAVING and FEW * robots <= expected and SPARSE * robots <= crowd.queue.size:
-                for other in starts[1:2]:
-                    searches += _begun(crowd, other, timer, seed)
+                searches.reverse()
+                for paths in other:
+                    searches += _begun(crowd, paths, timer, seed)
             elif cycle == CHOOSING:
                 searches.sort(key=lambda each: each.best, reverse=True)
             if searches[-1].total > searches[-1].best and not searches[-1].return_to_best(timer.goes_on):
@@ -366,7 +382,7 @@ def improved(
         advance(_played(searches), 0, best)
         if best == least:
             break
-    return min(searches, key=lambda each: each.best).rounds.best
+    return min(*(each.rounds.best for each in searches), *starts, key=_sum)
 
 
 def _begun(crowd: Crowd, paths: Paths, timer: Clock, seed: int) -> list[Improving]:

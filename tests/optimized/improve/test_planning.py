@@ -4,13 +4,17 @@ from dataclasses import replace
 from time import process_time
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 
 from carp_optimized.improve import planning
-from carp_optimized.improve.crowds import is_stepwise
+from carp_optimized.improve.crowds import FAR, crowd_of, is_stepwise, measure
+from carp_optimized.improve.improving import arrivals, paths_of
 from carp_optimized.improve.lacam import Search, plans_by_steps
 from carp_optimized.improve.planning import improve_crowd
+from carp_optimized.improve.rounds import GREEDY
+from carp_optimized.jit.references import Native
 from carp_spec import AfterGoal, Instance, RobotId, Solution, judge, total_cost
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import Sizes, instances
@@ -57,6 +61,29 @@ def test_rounds_improve_a_crowd_and_its_best_total_never_rises(after_goal: After
     first = plans_by_steps(instance)
     assert first is not None
     assert 2 * seen[-1] < total_cost(instance, first) + seen[0]
+
+
+@pytest.mark.parametrize("crowded", [0, 10**6])
+def test_plans_are_lawful_with_prioritized_planning_and_without(crowded: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(planning, "CROWDED", crowded)
+    instance = crowd(12, 60)
+    found = plan_crowd(instance, iterations=50, seconds=None)
+    assert judge(instance, found).valid
+    assert not found.unplanned
+
+
+@pytest.mark.parametrize("iterations", [1, 40, 2000])
+def test_rounds_from_two_starts_end_no_worse_than_either_in_whatever_order_they_come(iterations: int) -> None:
+    found = crowd_of(crowd(23, 60))
+    measure(Native(found), np.arange(60, dtype=np.int32), 0, 60, FAR)
+    always = planning.Clock(None, process_time, 0.0)
+    search = Search(found)
+    search.go(10**6)
+    assert search.ways is not None
+    starts = [paths_of(search.ways), planning._planned_in_order(found, always, 200, 0, planning.ALL, GREEDY)]
+    for ordered in (starts, starts[::-1]):
+        ended = planning.improved(found, ordered, iterations, always, 0, lambda *_: None)
+        assert arrivals(ended).sum() <= min(arrivals(each).sum() for each in starts)
 
 
 @pytest.mark.parametrize(
