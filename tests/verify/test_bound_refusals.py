@@ -125,11 +125,11 @@ def test_a_robot_without_a_way_is_named_and_left_out() -> None:
 
 
 @pytest.mark.parametrize(
-    ("start", "goal"), [("behind", "far"), ("near", "before"), ("behind", "before"), ("far", "near")]
+    ("start", "goal"), [("behind", "far"), ("near", "before"), ("island", "behind"), ("far", "near")]
 )
 def test_that_others_reach_a_goal_or_leave_a_start_is_no_way_between_them(start: str, goal: str) -> None:
     """All distances from and to the places that the first robot reaches are known to the checker."""
-    cells = tuple(Resource(name) for name in ("before", "near", "far", "behind"))
+    cells = tuple(Resource(name) for name in ("before", "near", "far", "behind", "island"))
     edges = (("before", "near"), ("near", "far"), ("far", "behind"))
     robots = (Robot("first", "near", "far"), Robot("lost", start, goal))
     instance = Instance(ResourceGraph(cells, edges, directed=True), robots)

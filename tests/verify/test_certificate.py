@@ -191,6 +191,14 @@ def test_an_exchange_is_refused_with_rule_robots_and_tick() -> None:
     assert "they exchange a and b" in str(breach)
 
 
+def test_robots_exchange_the_only_two_resources_though_one_of_them_goes_back_later() -> None:
+    graph = ResourceGraph((Resource("a", 2), Resource("b", 2)), (("a", "b"),))
+    one = Plan("r1", (Visit("a", 0, 1), Visit("b", 1, 5), Visit("a", 5, 6)))
+    other = Plan("r2", (Visit("b", 0, 1), Visit("a", 1, 2)))
+    (breach,) = certify_together(Instance(graph, (), "vanish"), (one, other)).breaches
+    assert (breach.rule, breach.robots, breach.tick) == ("joint/exchange", ("r1", "r2"), 1)
+
+
 def test_a_robot_that_moves_both_ways_at_a_tick_exchanges_with_nobody() -> None:
     alone = Plan("r1", (Visit("a", 0, 1), Visit("b", 1, 1), Visit("a", 1, 2)))
     agree(INSTANCE, (alone,))
