@@ -102,7 +102,7 @@ def test_a_signal_ends_a_command_with_all_that_it_started(command: str, number: 
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize(("command", "seconds"), itertools.product(MORE, (0.1, 0.3)))
+@pytest.mark.parametrize(("command", "seconds"), [*itertools.product(MORE, (0.1, 0.3))])
 def test_a_signal_ends_every_long_command(command: str, number: signal.Signals, seconds: float, town: Path) -> None:
     interrupted(command, number, town, seconds)
 
