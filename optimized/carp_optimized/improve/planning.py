@@ -11,9 +11,8 @@ paths so far. Where there is time for many rounds, each path is one of those tha
 
 The better start may be a trap: where robots with short ways went first through a narrow place, crowds wait behind them,
 and no few robots can change that. Plans by LaCAM have no such order. So they come first if they are the better ones
-once each robot has been planned again, and most cycles begin from the worse start, unless
-there are too few rounds to come down from it, or so little room that LaCAM moves robots to and fro. The last cycle goes
-on from the best paths.
+once each robot has been planned again, and most cycles begin from the worse start, unless there are too few rounds to
+come down from it, or so little room that LaCAM moves robots to and fro. The last cycle goes on from the best paths.
 
 A clock is looked at after each few milliseconds of work. What takes time at the end is timed on a part before. Where
 there is no time to measure all distances, the nearest robots are planned, with distances that end a little beyond
@@ -236,7 +235,7 @@ def _paths(crowd: Crowd, timer: Clock, is_measured: bool, iterations: int | None
     else:
         starts = [_nearest(crowd, timer)]
     timer.reserve(max(int(each.size.sum()) for each in starts))
-    paths = min(starts, key=_sum) if starts[0].size.all() else starts[0]
+    paths = min(starts, key=_sum)
     if paths.size.all() and timer.goes_on():
         return improved(crowd, starts, iterations, timer, seed, advance)
     advance(0, int(np.count_nonzero(paths.size == 0)), int(arrivals(paths)[paths.size > 0].sum()))
