@@ -25,6 +25,7 @@ from carp_optimized.improve.rounds import (
     put_all,
 )
 from carp_optimized.improve.sipp import GREED, no_query
+from carp_optimized.improve.soft_sipp import no_soft_query
 from carp_optimized.improve.stays import Paths, no_paths, no_stays, with_more_room
 from carp_optimized.jit.kinds import Ints, IntTable
 from carp_optimized.jit.references import Native
@@ -139,23 +140,26 @@ class Improving:
     def make_way(self, goes_on: Callable[[int], bool], greed: int) -> Paths:
         """Plan robots that have no paths, others again that were in their way; `goes_on` gets the number that wait.
 
-        Returns the paths when the fewest waited.
+        Returns paths of all robots, or those when few waited.
         """
         self.rounds.query.counts[GREED] = greed
         missing = np.flatnonzero(self.rounds.paths.size == 0)
         waiting = np.zeros(self.rounds.paths.size.size, np.int32)
         waiting[: missing.size] = missing
         fewest = count = missing.size
+        met = np.zeros(waiting.size, np.int32)
+        soft = Native(no_soft_query(self.rounds.stays, met))
         self._remember()
         while count > 0 and goes_on(count):
-            count = make_way(self._native, waiting, count, WORK)
+            count = make_way(self._native, soft, waiting, count, WORK)
             if count < 0:
                 count = ~count
                 self._make_room()
-            if count < fewest:
+                soft = Native(no_soft_query(self.rounds.stays, met))
+            if 0 < 2 * count <= fewest:  # copies of many long paths take long
                 fewest = count
                 self._remember()
-        return self.rounds.best
+        return self.rounds.best if count > 0 else self.rounds.paths
 
     def _go_through(
         self, step: Callable[[Native[Rounds], Ints, int, int], int], order: Ints, goes_on: Callable[[], bool]

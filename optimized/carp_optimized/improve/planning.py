@@ -1,10 +1,11 @@
 """Plans of a crowd in a given time or a number of rounds: the best that can be had (anytime search).
 
-First come plans by LaCAM, and by prioritized planning with the shortest way first: robots that arrive early park early,
-and those that come later go around them. Its queries are greedy at first, and then less so if there is time. Who finds
-no path takes a shortest way, and those that it meets are planned again. Where that leads nowhere, or LaCAM's paths show
-that robots wait for longer than they drive, so that whoever goes last waits for all, LaCAM follows guides; where that
-does not end, as many robots as possible are planned one after the other. Then rounds improve the best ones.
+First come plans by LaCAM, and by prioritized planning. With the shortest way first, robots that arrive early park
+early, and those that come later go around them. Where that makes jams, passes in other orders follow, else less greedy
+ones. Who finds no path takes one on which it meets few others, and those are planned again. If that is not much better
+than LaCAM, LaCAM follows guides too. Where nothing ends, as many robots as possible are planned one after the other.
+Then rounds improve the best plans.
+
 They may raise the sum for a while (simulated annealing, Kirkpatrick et al. 1983): on average by a share of a robot's
 mean delay, which falls to 0 as the cube of what is left of the cycle. There are several cycles, each from the best
 paths so far. Where there is time for many rounds, each path is one of those that arrive equally early.
@@ -33,7 +34,7 @@ from carp_optimized.improve.improving import LONGER, Improving, arrivals, paths_
 from carp_optimized.improve.lacam import RUNNING, STEPS, Search
 from carp_optimized.improve.rounds import GREEDY, SURE
 from carp_optimized.improve.stays import Paths, no_paths
-from carp_optimized.jit.kinds import IntTable
+from carp_optimized.jit.kinds import Ints, IntTable
 from carp_optimized.jit.references import Native
 from carp_optimized.state.arrays import NO_LIMIT
 from carp_spec import Instance, Plan, Robot, Solution, Visit
@@ -54,8 +55,6 @@ SEARCHING, GUIDING, GUIDED, LAST, ALL = 3, 4, 5, 6, 8
 
 If nothing has found plans for all, LaCAM goes on, and what is left is for prioritized planning of as many as possible.
 """
-CROWDED = 5
-"""Prioritized planning is left out where LaCAM's paths are this many halves of the shortest ways long, or more."""
 MISSES = 8
 """Prioritized planning gives up when robots have found no path this often, on average."""
 HOPE, MANY = 8, 8
@@ -64,6 +63,12 @@ SOME, PATIENCE = 64, 3
 """If a pass has missed at most one of `SOME` robots, so many times its time is for these."""
 LESS = ((0, 5), (GREEDY // 4, 2))
 """Less greed than `GREEDY`, and how many times as long prioritized planning takes with it."""
+JAMMED = 4
+"""Other orders are tried where the shortest way first makes paths longer by more than one of so many parts."""
+NOISE = (2, 64, 1, 4, 2, 64)
+"""The most noise in the orders, in mean ways."""
+HURRY = 16
+"""The shortest way first is the first order where measuring distances takes more than one of so many parts."""
 LONGEST = 700
 """The visits of a path by prioritized planning, if LaCAM has found none that shows how many they are."""
 CYCLES, LEAVING, CHOOSING = 8, 1, 7
@@ -265,9 +270,7 @@ def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
     search = Search(crowd, seed)
     ways = _searched(search, STEPS, lambda: timer.goes_on(SEARCHING))
     by_steps = [] if ways is None else [paths_of(ways)]
-    in_order = no_paths(crowd.start.size, 1)
-    if all(2 * _sum(each) < CROWDED * int(ways_of(crowd).sum()) for each in by_steps):
-        in_order = _best_in_order(crowd, timer, by_steps, seed)
+    in_order = _best_in_order(crowd, timer, by_steps, seed)
     has_all = bool(in_order.size.all())
     if has_all and _is_better(crowd, in_order, by_steps):
         return [in_order, *by_steps]
@@ -279,32 +282,66 @@ def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
         by_steps.append(paths_of(ways))
     if has_all or by_steps:
         return sorted(by_steps, key=_sum)[: 1 if has_all else 2] + [in_order] * has_all
-    later = _planned_in_order(crowd, timer, LONGEST, seed, ALL, GREEDY)
+    later = _planned_in_order(crowd, timer, [], seed, ALL, GREEDY, ways_of(crowd))
     return [max(in_order, later, key=lambda each: int(np.count_nonzero(each.size)))]
 
 
 def _best_in_order(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int) -> Paths:
-    """The better paths of greedy prioritized planning, and of less greedy one if there is time for it.
+    """The best paths of greedy passes of prioritized planning, or of a less greedy one, as far as there is time."""
+    ways = ways_of(crowd)
+    is_short_first = timer.seconds is not None and HURRY * timer.begun > timer.seconds
+    best = no_paths(ways.size, 1)
+    longest = 0.0
+    for keys in _orders(ways, seed, is_short_first=is_short_first):
+        if longest >= timer.left(SEARCHING):
+            break
+        began = timer.spent
+        until = ALL if by_steps and longest == 0 else SEARCHING
+        found = _planned_in_order(crowd, timer, by_steps, seed, until, GREEDY, keys)
+        longest = max(longest, timer.spent - began)
+        best = min(best, found, key=_badness)
+        if keys is ways and best.size.all() and JAMMED * _sum(best) < (JAMMED + 1) * int(ways.sum()):
+            return min(_less_greedy(crowd, timer, by_steps, seed, best, timer.spent - began), best, key=_badness)
+    return best
+
+
+def _orders(ways: Ints, seed: int, *, is_short_first: bool) -> Iterator[Ints]:
+    """Keys for orders of robots: any order, the shortest and the longest way first, and the shortest with noise.
+
+    The shortest way first is the best order where that leads to few delays. Else robots that park early hold up others.
+    """
+    stream = np.random.default_rng(seed)
+    if is_short_first:
+        yield ways
+    yield stream.permutation(ways.size).astype(np.int32)
+    if not is_short_first:
+        yield ways
+    yield -ways
+    for most in NOISE:
+        yield ways + stream.integers(0, 1 + most * int(ways.mean()), ways.size, dtype=np.int32)
+
+
+def _less_greedy(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int, greedy: Paths, took: float) -> Paths:
+    """The paths of a less greedy pass than one that took so long, if there is time for it.
 
     There is more time for what is likely to be much better than paths by LaCAM.
     """
-    room = by_steps[0].place.shape[1] if by_steps else LONGEST
-    began = timer.spent
-    greedy = _planned_in_order(crowd, timer, room, seed, ALL if by_steps else SEARCHING, GREEDY)
-    took = timer.spent - began
-    is_better = bool(greedy.size.all()) and _is_better(crowd, greedy, by_steps)
-    until, share = (LAST, 1) if is_better else (SEARCHING, 4)
+    until, share = (LAST, 1) if _is_better(crowd, greedy, by_steps) else (SEARCHING, 4)
     for greed, times in LESS:
         if share * times * took < timer.left(until):
-            less = _planned_in_order(crowd, timer, room, seed, until, greed)
-            return min(less, greedy, key=lambda each: (np.count_nonzero(each.size == 0), _sum(each)))
+            return _planned_in_order(crowd, timer, by_steps, seed, until, greed, ways_of(crowd))
     return greedy
 
 
+def _badness(paths: Paths) -> tuple[int, int]:
+    """The robots without a path, and the sum of the others' arrivals."""
+    return int(np.count_nonzero(paths.size == 0)), int(arrivals(paths)[paths.size > 0].sum())
+
+
 def _is_better(crowd: Crowd, in_order: Paths, by_steps: Sequence[Paths]) -> bool:
-    """Whether the delays of paths by LaCAM are more than twice those of others."""
+    """Whether the delays of paths by LaCAM are more than 1.5 times those of others."""
     least = int(ways_of(crowd).sum())
-    return all(2 * (_sum(in_order) - least) < _sum(each) - least for each in by_steps)
+    return all(3 * (_sum(in_order) - least) < 2 * (_sum(each) - least) for each in by_steps)
 
 
 def _sum(paths: Paths) -> int:
@@ -319,16 +356,19 @@ def _searched(search: Search, steps: int, goes_on: Callable[[], bool]) -> IntTab
     return search.ways
 
 
-def _planned_in_order(crowd: Crowd, timer: Clock, room: int, seed: int, until: int, greed: int) -> Paths:
+def _planned_in_order(
+    crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int, until: int, greed: int, keys: Ints
+) -> Paths:
     """The paths of a pass of prioritized planning, and then of the robots that it missed, as long as they get fewer."""
     robots = crowd.start.size
+    room = by_steps[0].place.shape[1] if by_steps else LONGEST
     improving = Improving(crowd, no_paths(robots, room), seed)
-    begun, time = timer.spent, timer.left(until)
+    begun, time = timer.spent, timer.seconds or inf
 
     def goes_on(*, is_likely: bool) -> bool:
         return timer.goes_on(until) and (is_likely or HOPE * (timer.spent - begun) < time)
 
-    order = np.argsort(ways_of(crowd), kind="stable").astype(np.int32)
+    order = np.argsort(keys, kind="stable").astype(np.int32)
     improving.plan_first(order, lambda: goes_on(is_likely=MANY * improving.missed <= robots), greed)
     missing = int(np.count_nonzero(improving.rounds.paths.size == 0))
     last = improving.missed + MISSES * robots

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 
 from carp_optimized.improve import planning
-from carp_optimized.improve.crowds import FAR, crowd_of, is_stepwise, measure
+from carp_optimized.improve.crowds import FAR, crowd_of, is_stepwise, measure, ways_of
 from carp_optimized.improve.improving import arrivals, paths_of
 from carp_optimized.improve.lacam import Search, plans_by_steps
 from carp_optimized.improve.planning import improve_crowd
@@ -63,9 +63,9 @@ def test_rounds_improve_a_crowd_and_its_best_total_never_rises(after_goal: After
     assert 2 * seen[-1] < total_cost(instance, first) + seen[0]
 
 
-@pytest.mark.parametrize("crowded", [0, 10**6])
-def test_plans_are_lawful_with_prioritized_planning_and_without(crowded: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(planning, "CROWDED", crowded)
+@pytest.mark.parametrize("jammed", [0, 10**6])
+def test_plans_are_lawful_with_less_greed_and_with_other_orders(jammed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(planning, "JAMMED", jammed)
     instance = crowd(12, 60)
     found = plan_crowd(instance, iterations=50, seconds=None)
     assert judge(instance, found).valid
@@ -80,7 +80,8 @@ def test_rounds_from_two_starts_end_no_worse_than_either_in_whatever_order_they_
     search = Search(found)
     search.go(10**6)
     assert search.ways is not None
-    starts = [paths_of(search.ways), planning._planned_in_order(found, always, 200, 0, planning.ALL, GREEDY)]
+    steps = paths_of(search.ways)
+    starts = [steps, planning._planned_in_order(found, always, [steps], 0, planning.ALL, GREEDY, ways_of(found))]
     for ordered in (starts, starts[::-1]):
         ended = planning.improved(found, ordered, iterations, always, 0, lambda *_: None)
         assert arrivals(ended).sum() <= min(arrivals(each).sum() for each in starts)

@@ -1,0 +1,228 @@
+"""A path of one robot through the stays of others, where it meets few of them (SIPPS, Li et al. 2022).
+
+A robot may be where another one is, and swap with it, at a price in ticks. So a place's time has parts, gaps and stays
+in turn, and a path leads through both. Of the arrivals in a part the one is kept that comes earliest if its price is
+added. That may miss the best path, which does no harm: whoever is met is planned again.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carp_optimized.improve.crowds import FAR, Crowd
+from carp_optimized.improve.sipp import BUCKETS, WHOLE
+from carp_optimized.improve.stays import Paths, Stays, later_than, robot_at
+from carp_optimized.jit.compiling import compiled
+from carp_optimized.jit.kinds import Ints, Longs
+from carp_optimized.jit.references import dereference
+from carp_optimized.state.arrays import NEVER, NONE
+
+GENERATION, LABELS, LEAST, TOP, EXPANDED = range(5)  # the counts
+PRICE = 16
+"""The ticks that a robot met is worth, once more for each time that it was met before."""
+
+
+class SoftQuery(NamedTuple):
+    """The scratch of a query: part 2 k of a place's time is gap k, and part 2 k + 1 is stay k.
+
+    Each part has its arrival, the ticks and prices paid until then, and the part before, if it is marked. `met` says
+    how often each robot was met.
+    """
+
+    mark: Ints
+    arrive: Ints
+    paid: Ints
+    before: Ints
+    head: Ints
+    part: Ints
+    worth: Ints
+    later: Ints
+    counts: Longs
+    met: Ints
+
+
+soft_query_at = dereference(SoftQuery)
+
+
+def no_soft_query(stays: Stays, met: Ints) -> SoftQuery:
+    """The scratch for these rows."""
+    parts = 2 * stays.enter.size
+    return SoftQuery(
+        mark=np.zeros(parts, np.int32),
+        arrive=np.empty(parts, np.int32),
+        paid=np.empty(parts, np.int32),
+        before=np.empty(parts, np.int32),
+        head=np.full(BUCKETS, NONE, np.int32),
+        part=np.empty(2 * parts, np.int32),
+        worth=np.empty(2 * parts, np.int32),
+        later=np.empty(2 * parts, np.int32),
+        counts=np.zeros(5, np.int64),
+        met=met,
+    )
+
+
+@compiled
+def find_soft_path(
+    crowd: Crowd, stays: Stays, query: SoftQuery, robot: int, greed: int, paths: Paths, row: int
+) -> bool:
+    """Write a path into the row; `False` if none is found, or it has too many visits."""
+    start = int(crowd.start[robot])
+    goal = int(crowd.goal[robot])
+    query.counts[GENERATION] += 1
+    query.counts[LABELS] = 0
+    query.counts[LEAST] = BUCKETS
+    query.counts[TOP] = 0
+    least = int(crowd.distance[robot][start])
+    note(query, 2 * int(stays.first[start]), 0, 0, NONE, 0)
+    found = NONE
+    while query.counts[LEAST] <= query.counts[TOP]:
+        bucket = int(query.counts[LEAST])
+        label = int(query.head[bucket])
+        if label == NONE:
+            query.counts[LEAST] += 1
+            continue
+        query.head[bucket] = query.later[label]
+        part = int(query.part[label])
+        if query.mark[part] < 0 or query.paid[part] != query.worth[label]:
+            continue
+        if stays.place[part // 2] == goal and (not crowd.parks or part == last_part(stays, goal)):
+            found = part
+            break
+        query.counts[EXPANDED] += 1
+        query.mark[part] = -query.counts[GENERATION]  # a later arrival of less price would come after those that follow
+        if not expand_part(crowd, stays, query, robot, part, least, greed):
+            break
+    for k in range(int(query.counts[LEAST]), int(query.counts[TOP]) + 1):
+        query.head[k] = NONE
+    return found != NONE and write_soft_path(stays, query, found, paths, row)
+
+
+@compiled
+def last_part(stays: Stays, place: int) -> int:
+    """The gap after all stays."""
+    return 2 * (int(stays.first[place]) + int(stays.size[place]))
+
+
+@compiled
+def start_of_part(stays: Stays, part: int) -> int:
+    """The tick at which a part of a place's time begins."""
+    k = part // 2
+    if part % 2 == 1:
+        return int(stays.enter[k])
+    return int(stays.leave[k - 1]) if k > stays.first[stays.place[k]] else 0
+
+
+@compiled
+def end_of_part(stays: Stays, part: int) -> int:
+    """The tick at which a part of a place's time ends."""
+    if part % 2 == 1:
+        return int(stays.leave[part // 2])
+    return NEVER if part == last_part(stays, int(stays.place[part // 2])) else int(stays.enter[part // 2])
+
+
+@compiled
+def price_of(stays: Stays, query: SoftQuery, part: int) -> int:
+    """What it costs to be there."""
+    return worth_of(query, int(stays.robot[part // 2])) if part % 2 == 1 else 0
+
+
+@compiled
+def price_of_move(stays: Stays, query: SoftQuery, place: int, target: int, tick: int) -> int:
+    """What it costs to meet whoever makes the opposite move at the tick."""
+    other = robot_at(stays, target, tick - 1)
+    return worth_of(query, other) if other != NONE and robot_at(stays, place, tick) == other else 0
+
+
+@compiled
+def worth_of(query: SoftQuery, robot: int) -> int:
+    """What it costs to meet a robot."""
+    return PRICE * (1 + int(query.met[robot]))
+
+
+@compiled
+def expand_part(crowd: Crowd, stays: Stays, query: SoftQuery, robot: int, part: int, least: int, greed: int) -> bool:
+    """Reach the next part, and all those to which a move leads; `False` if there is no room for that many labels."""
+    place = int(stays.place[part // 2])
+    distance = crowd.distance[robot]
+    soon = int(query.arrive[part]) + 1
+    price = int(query.paid[part]) - int(query.arrive[part])
+    until = end_of_part(stays, part)
+    if until < NEVER:
+        paid = until + price + price_of(stays, query, part + 1)
+        reach_part(query, part + 1, until, paid, part, int(distance[place]), least, greed)
+    for edge in range(int(crowd.first[place]), int(crowd.first[place + 1])):
+        target = int(crowd.target[edge])
+        rest = int(distance[target])
+        into = part_at(stays, target, soon)
+        last = last_part(stays, target) if rest < FAR else NONE
+        while into <= last:
+            tick = max(soon, start_of_part(stays, into))
+            if tick > until:
+                break
+            if query.counts[LABELS] + 1 >= query.part.size:
+                return False
+            if tick < end_of_part(stays, into):
+                paid = tick + price + price_of(stays, query, into)
+                if tick == until:  # only then can another enter the place
+                    paid += price_of_move(stays, query, place, target, tick)
+                reach_part(query, into, tick, paid, part, rest, least, greed)
+            into += 1
+    return True
+
+
+@compiled
+def part_at(stays: Stays, place: int, tick: int) -> int:
+    """The part of a place's time in which the tick is."""
+    k = int(stays.first[place]) + later_than(stays, place, tick)
+    return 2 * k - 1 if k > stays.first[place] and stays.leave[k - 1] > tick else 2 * k
+
+
+@compiled
+def reach_part(
+    query: SoftQuery, part: int, tick: int, paid: int, before: int, rest: int, least: int, greed: int
+) -> None:
+    """Note an arrival in a part, unless that was left, or has one that is as good."""
+    mark = int(query.mark[part])
+    now = int(query.counts[GENERATION])
+    if mark != -now and (mark != now or paid < query.paid[part]):
+        note(query, part, tick, paid, before, min(paid + rest - least + greed * rest // WHOLE, BUCKETS - 1))
+
+
+@compiled
+def note(query: SoftQuery, part: int, tick: int, paid: int, before: int, bucket: int) -> None:
+    """Note an arrival in a part."""
+    query.mark[part] = query.counts[GENERATION]
+    query.arrive[part] = tick
+    query.paid[part] = paid
+    query.before[part] = before
+    label = int(query.counts[LABELS])
+    query.counts[LABELS] += 1
+    query.part[label] = part
+    query.worth[label] = paid
+    query.later[label] = query.head[bucket]
+    query.head[bucket] = label
+    query.counts[LEAST] = min(int(query.counts[LEAST]), bucket)
+    query.counts[TOP] = max(int(query.counts[TOP]), bucket)
+
+
+@compiled
+def write_soft_path(stays: Stays, query: SoftQuery, found: int, paths: Paths, row: int) -> bool:
+    """Write the visits that lead to a part; `False` if they are too many for the row."""
+    visits = 0
+    part = found
+    while part != NONE:
+        before = int(query.before[part])
+        visits += before == NONE or stays.place[before // 2] != stays.place[part // 2]
+        part = before
+    if visits > paths.place[row].size:
+        return False
+    paths.size[row] = visits
+    part = found
+    while part != NONE:
+        before = int(query.before[part])
+        if before == NONE or stays.place[before // 2] != stays.place[part // 2]:
+            visits -= 1
+            paths.place[row][visits] = stays.place[part // 2]
+            paths.enter[row][visits] = query.arrive[part]
+        part = before
+    return True

@@ -1,0 +1,65 @@
+"""Paths through the stays of others: lawful steps, nobody met without need, and each robot met is planned again."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from carp_optimized.improve.crowds import FAR, crowd_of, measure
+from carp_optimized.improve.improving import Improving
+from carp_optimized.improve.planning import solution_along
+from carp_optimized.improve.rounds import GREEDY
+from carp_optimized.improve.stays import no_paths
+from carp_optimized.jit.references import Native
+from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, Solution, judge
+from carproof.generate import Fleet, Grid, grid_instance
+
+ROBOTS = 60
+
+
+def planned(instance: Instance, order: Sequence[int], *, has_way: bool, greed: int = GREEDY) -> tuple[Solution, int]:
+    """Plans in order, with way made for those that find none or without; and how often nobody's way was free."""
+    crowd = crowd_of(instance)
+    robots = np.arange(len(instance.robots), dtype=np.int32)
+    measure(Native(crowd), robots, 0, robots.size, FAR)
+    improving = Improving(crowd, no_paths(robots.size, 400))
+    improving.plan_first(np.array(order, np.int32), lambda: True, greed)
+    paths = improving.rounds.paths
+    if has_way:
+        paths = improving.make_way(lambda _: improving.missed < 100 * robots.size, greed)
+    return solution_along(instance, instance.robots, paths), improving.missed
+
+
+@pytest.mark.parametrize("after_goal", ["park", "vanish"])
+def test_robots_that_found_no_path_have_one_once_way_is_made(after_goal: AfterGoal) -> None:
+    missing = 0
+    for seed in range(24):
+        instance = grid_instance(Grid(width=9, height=9, map=20), Fleet(robots=ROBOTS, seed=seed))
+        instance = replace(instance, after_goal=after_goal)
+        greed = GREEDY * (seed % 3) ** 2
+        without, _ = planned(instance, range(ROBOTS), has_way=False, greed=greed)
+        found, _ = planned(instance, range(ROBOTS), has_way=True, greed=greed)
+        assert judge(instance, without).valid
+        assert judge(instance, found).valid
+        assert not found.unplanned
+        missing += len(without.unplanned)
+    assert missing > 60
+
+
+def corridor() -> Instance:
+    """A corridor from a to e, with side rooms at b and c: one robot parks in d before the other has passed to e."""
+    edges = (("a", "b"), ("b", "c"), ("c", "d"), ("d", "e"), ("b", "s"), ("c", "t"))
+    robots = (Robot("far", "a", "e"), Robot("near", "b", "d"), Robot("aside", "t", "t"))
+    return Instance(ResourceGraph(tuple(map(Resource, "abcdest")), edges), robots, after_goal="park")
+
+
+def test_only_the_robot_in_the_way_is_planned_again() -> None:
+    instance = corridor()
+    without, _ = planned(instance, [1, 2, 0], has_way=False)
+    assert without.unplanned == ("far",)
+    found, missed = planned(instance, [1, 2, 0], has_way=True)
+    assert judge(instance, found).valid
+    assert not found.unplanned
+    assert missed == 2
+    assert found.plan_of("aside") == without.plan_of("aside")
