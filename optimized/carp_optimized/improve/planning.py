@@ -67,10 +67,10 @@ JAMMED = 4
 """Other orders are tried where the shortest way first makes paths longer by more than one of so many parts."""
 NOISE = (2, 64, 1, 4, 2, 64)
 """The most noise in the orders, in mean ways."""
-HURRY = 16
-"""The shortest way first is the first order where measuring distances takes more than one of so many parts."""
+LARGE, CROWDED = 2000, 5
+"""With more robots there is no time for other orders, nor for any if LaCAM's paths are 2.5 times the shortest ways."""
 LONGEST = 700
-"""The visits of a path by prioritized planning, if LaCAM has found none that shows how many they are."""
+"""The visits of a path by prioritized planning, or as many as a path by LaCAM has: a way through others may be long."""
 CYCLES, LEAVING, CHOOSING = 8, 1, 7
 """The cycles; the one that leaves the better start for the worse one, and the one that chooses the best paths."""
 FEW, SPARSE = 8, 8
@@ -289,10 +289,12 @@ def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
 def _best_in_order(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int) -> Paths:
     """The best paths of greedy passes of prioritized planning, or of a less greedy one, as far as there is time."""
     ways = ways_of(crowd)
-    is_short_first = timer.seconds is not None and HURRY * timer.begun > timer.seconds
+    is_large = ways.size > LARGE
     best = no_paths(ways.size, 1)
+    if is_large and any(2 * _sum(each) >= CROWDED * int(ways.sum()) for each in by_steps):
+        return best
     longest = 0.0
-    for keys in _orders(ways, seed, is_short_first=is_short_first):
+    for keys in [ways] if is_large else _orders(ways, seed):
         if longest >= timer.left(SEARCHING):
             break
         began = timer.spent
@@ -300,22 +302,20 @@ def _best_in_order(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: 
         found = _planned_in_order(crowd, timer, by_steps, seed, until, GREEDY, keys)
         longest = max(longest, timer.spent - began)
         best = min(best, found, key=_badness)
-        if keys is ways and best.size.all() and JAMMED * _sum(best) < (JAMMED + 1) * int(ways.sum()):
+        is_free = is_large or JAMMED * _sum(best) < (JAMMED + 1) * int(ways.sum())
+        if keys is ways and best.size.all() and is_free:
             return min(_less_greedy(crowd, timer, by_steps, seed, best, timer.spent - began), best, key=_badness)
     return best
 
 
-def _orders(ways: Ints, seed: int, *, is_short_first: bool) -> Iterator[Ints]:
+def _orders(ways: Ints, seed: int) -> Iterator[Ints]:
     """Keys for orders of robots: any order, the shortest and the longest way first, and the shortest with noise.
 
     The shortest way first is the best order where that leads to few delays. Else robots that park early hold up others.
     """
     stream = np.random.default_rng(seed)
-    if is_short_first:
-        yield ways
     yield stream.permutation(ways.size).astype(np.int32)
-    if not is_short_first:
-        yield ways
+    yield ways
     yield -ways
     for most in NOISE:
         yield ways + stream.integers(0, 1 + most * int(ways.mean()), ways.size, dtype=np.int32)
@@ -361,7 +361,7 @@ def _planned_in_order(
 ) -> Paths:
     """The paths of a pass of prioritized planning, and then of the robots that it missed, as long as they get fewer."""
     robots = crowd.start.size
-    room = by_steps[0].place.shape[1] if by_steps else LONGEST
+    room = max([LONGEST, *(each.place.shape[1] for each in by_steps)])
     improving = Improving(crowd, no_paths(robots, room), seed)
     begun, time = timer.spent, timer.seconds or inf
 
