@@ -7,7 +7,6 @@ other out for ever.
 
 from carp_optimized.improve.rounds import MISSED, Rounds, choice, rounds_at
 from carp_optimized.improve.sipp import EXPANDED, GREED, find_path
-from carp_optimized.improve.soft_sipp import EXPANDED as EXPANDED_PARTS
 from carp_optimized.improve.soft_sipp import SoftQuery, find_soft_path, soft_query_at
 from carp_optimized.improve.stays import drop, later_than, leave_of, put, robot_at
 from carp_optimized.jit.compiling import compiled, entry
@@ -25,8 +24,8 @@ def make_way(native: Native[Rounds], soft: Native[SoftQuery], waiting: Ints, cou
     """
     state = rounds_at(native)
     query = soft_query_at(soft)
-    done = int(state.query.counts[EXPANDED]) + int(query.counts[EXPANDED_PARTS])
-    while count > 0 and state.query.counts[EXPANDED] + query.counts[EXPANDED_PARTS] < done + work:
+    done = int(state.query.counts[EXPANDED]) + int(query.labels.counts[EXPANDED])
+    while count > 0 and state.query.counts[EXPANDED] + query.labels.counts[EXPANDED] < done + work:
         at = choice(state.stream, count)
         robot = int(waiting[at])
         count -= 1

@@ -302,8 +302,8 @@ def _best_in_order(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: 
         found = _planned_in_order(crowd, timer, by_steps, seed, until, GREEDY, keys)
         longest = max(longest, timer.spent - began)
         best = min(best, found, key=_badness)
-        is_free = is_large or JAMMED * _sum(best) < (JAMMED + 1) * int(ways.sum())
-        if keys is ways and best.size.all() and is_free:
+        is_short_first = keys is ways and bool(best.size.all())
+        if is_short_first and (is_large or JAMMED * _sum(best) < (JAMMED + 1) * int(ways.sum())):
             return min(_less_greedy(crowd, timer, by_steps, seed, best, timer.spent - began), best, key=_badness)
     return best
 

@@ -49,8 +49,11 @@ class Query(NamedTuple):
 
 def no_query(stays: Stays) -> Query:
     """The scratch for these rows."""
-    gaps = stays.enter.size
-    labels = 4 * gaps
+    return query_of(stays.enter.size, 4 * stays.enter.size)
+
+
+def query_of(gaps: int, labels: int) -> Query:
+    """The scratch for so many gaps and labels."""
     return Query(
         mark=np.zeros(gaps, np.int32),
         arrive=np.empty(gaps, np.int32),
@@ -77,19 +80,13 @@ def find_path(crowd: Crowd, stays: Stays, query: Query, robot: int, latest: int,
     if least > latest:
         return False
     latest = min(latest, least + BUCKETS - 1)
-    query.counts[GENERATION] += 1
-    query.counts[LABELS] = 0
-    query.counts[LEAST] = BUCKETS
-    query.counts[TOP] = 0
+    begin(query)
     reach(query, first, 0, NONE, bucket_of(query, 0, int(crowd.distance[robot][start])))
     found = NONE
-    while query.counts[LEAST] <= query.counts[TOP]:
-        bucket = int(query.counts[LEAST])
-        label = int(query.head[bucket])
+    while True:
+        label = next_label(query)
         if label == NONE:
-            query.counts[LEAST] += 1
-            continue
-        query.head[bucket] = query.later[label]
+            break
         gap = int(query.gap[label])
         if query.arrive[gap] != query.tick[label]:
             continue
@@ -99,9 +96,37 @@ def find_path(crowd: Crowd, stays: Stays, query: Query, robot: int, latest: int,
         query.counts[EXPANDED] += 1
         if not expand(crowd, stays, query, robot, gap, least, latest):
             break
+    clear(query)
+    return found != NONE and write_path(stays, query, found, paths, row)
+
+
+@compiled
+def begin(query: Query) -> None:
+    """Begin a query without labels."""
+    query.counts[GENERATION] += 1
+    query.counts[LABELS] = 0
+    query.counts[LEAST] = BUCKETS
+    query.counts[TOP] = 0
+
+
+@compiled
+def next_label(query: Query) -> int:
+    """Take a label out of the first bucket that has one: the one put in last; `NONE` if there is none."""
+    while query.counts[LEAST] <= query.counts[TOP]:
+        bucket = int(query.counts[LEAST])
+        label = int(query.head[bucket])
+        if label != NONE:
+            query.head[bucket] = query.later[label]
+            return label
+        query.counts[LEAST] += 1
+    return NONE
+
+
+@compiled
+def clear(query: Query) -> None:
+    """Leave no labels in the buckets."""
     for k in range(int(query.counts[LEAST]), int(query.counts[TOP]) + 1):
         query.head[k] = NONE
-    return found != NONE and write_path(stays, query, found, paths, row)
 
 
 @compiled

@@ -10,34 +10,37 @@ from typing import NamedTuple
 import numpy as np
 
 from carp_optimized.improve.crowds import FAR, Crowd
-from carp_optimized.improve.sipp import BUCKETS, WHOLE
+from carp_optimized.improve.sipp import (
+    BUCKETS,
+    EXPANDED,
+    GENERATION,
+    LABELS,
+    WHOLE,
+    Query,
+    begin,
+    clear,
+    next_label,
+    query_of,
+    reach,
+)
 from carp_optimized.improve.stays import Paths, Stays, later_than, robot_at
 from carp_optimized.jit.compiling import compiled
-from carp_optimized.jit.kinds import Ints, Longs
+from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import dereference
 from carp_optimized.state.arrays import NEVER, NONE
 
-GENERATION, LABELS, LEAST, TOP, EXPANDED = range(5)  # the counts
 PRICE = 16
 """The ticks that a robot met is worth, once more for each time that it was met before."""
 
 
 class SoftQuery(NamedTuple):
-    """The scratch of a query: part 2 k of a place's time is gap k, and part 2 k + 1 is stay k.
+    """The scratch of a query: gap 2 k of `labels` is gap k of a place's time, and gap 2 k + 1 is stay k: its parts.
 
-    Each part has its arrival, the ticks and prices paid until then, and the part before, if it is marked. `met` says
-    how often each robot was met.
+    `paid` are the ticks and prices until the arrival in a part, and `met` says how often each robot was met.
     """
 
-    mark: Ints
-    arrive: Ints
+    labels: Query
     paid: Ints
-    before: Ints
-    head: Ints
-    part: Ints
-    worth: Ints
-    later: Ints
-    counts: Longs
     met: Ints
 
 
@@ -47,18 +50,7 @@ soft_query_at = dereference(SoftQuery)
 def no_soft_query(stays: Stays, met: Ints) -> SoftQuery:
     """The scratch for these rows."""
     parts = 2 * stays.enter.size
-    return SoftQuery(
-        mark=np.zeros(parts, np.int32),
-        arrive=np.empty(parts, np.int32),
-        paid=np.empty(parts, np.int32),
-        before=np.empty(parts, np.int32),
-        head=np.full(BUCKETS, NONE, np.int32),
-        part=np.empty(2 * parts, np.int32),
-        worth=np.empty(2 * parts, np.int32),
-        later=np.empty(2 * parts, np.int32),
-        counts=np.zeros(5, np.int64),
-        met=met,
-    )
+    return SoftQuery(query_of(parts, 2 * parts), np.empty(parts, np.int32), met)
 
 
 @compiled
@@ -68,32 +60,26 @@ def find_soft_path(
     """Write a path into the row; `False` if none is found, or it has too many visits."""
     start = int(crowd.start[robot])
     goal = int(crowd.goal[robot])
-    query.counts[GENERATION] += 1
-    query.counts[LABELS] = 0
-    query.counts[LEAST] = BUCKETS
-    query.counts[TOP] = 0
+    labels = query.labels
+    begin(labels)
     least = int(crowd.distance[robot][start])
-    note(query, 2 * int(stays.first[start]), 0, 0, NONE, 0)
+    reach_part(query, 2 * int(stays.first[start]), 0, 0, NONE, least, least, greed)
     found = NONE
-    while query.counts[LEAST] <= query.counts[TOP]:
-        bucket = int(query.counts[LEAST])
-        label = int(query.head[bucket])
+    while True:
+        label = next_label(labels)
         if label == NONE:
-            query.counts[LEAST] += 1
-            continue
-        query.head[bucket] = query.later[label]
-        part = int(query.part[label])
-        if query.mark[part] < 0 or query.paid[part] != query.worth[label]:
+            break
+        part = int(labels.gap[label])
+        if labels.mark[part] < 0:
             continue
         if stays.place[part // 2] == goal and (not crowd.parks or part == last_part(stays, goal)):
             found = part
             break
-        query.counts[EXPANDED] += 1
-        query.mark[part] = -query.counts[GENERATION]  # a later arrival of less price would come after those that follow
+        labels.counts[EXPANDED] += 1
+        labels.mark[part] = -labels.mark[part]  # a later arrival of less price would come after those that follow
         if not expand_part(crowd, stays, query, robot, part, least, greed):
             break
-    for k in range(int(query.counts[LEAST]), int(query.counts[TOP]) + 1):
-        query.head[k] = NONE
+    clear(labels)
     return found != NONE and write_soft_path(stays, query, found, paths, row)
 
 
@@ -144,8 +130,8 @@ def expand_part(crowd: Crowd, stays: Stays, query: SoftQuery, robot: int, part: 
     """Reach the next part, and all those to which a move leads; `False` if there is no room for that many labels."""
     place = int(stays.place[part // 2])
     distance = crowd.distance[robot]
-    soon = int(query.arrive[part]) + 1
-    price = int(query.paid[part]) - int(query.arrive[part])
+    soon = int(query.labels.arrive[part]) + 1
+    price = int(query.paid[part]) - int(query.labels.arrive[part])
     until = end_of_part(stays, part)
     if until < NEVER:
         paid = until + price + price_of(stays, query, part + 1)
@@ -159,7 +145,7 @@ def expand_part(crowd: Crowd, stays: Stays, query: SoftQuery, robot: int, part: 
             tick = max(soon, start_of_part(stays, into))
             if tick > until:
                 break
-            if query.counts[LABELS] + 1 >= query.part.size:
+            if query.labels.counts[LABELS] + 1 >= query.labels.gap.size:
                 return False
             if tick < end_of_part(stays, into):
                 paid = tick + price + price_of(stays, query, into)
@@ -182,27 +168,12 @@ def reach_part(
     query: SoftQuery, part: int, tick: int, paid: int, before: int, rest: int, least: int, greed: int
 ) -> None:
     """Note an arrival in a part, unless that was left, or has one that is as good."""
-    mark = int(query.mark[part])
-    now = int(query.counts[GENERATION])
+    mark = int(query.labels.mark[part])
+    now = int(query.labels.counts[GENERATION])
     if mark != -now and (mark != now or paid < query.paid[part]):
-        note(query, part, tick, paid, before, min(paid + rest - least + greed * rest // WHOLE, BUCKETS - 1))
-
-
-@compiled
-def note(query: SoftQuery, part: int, tick: int, paid: int, before: int, bucket: int) -> None:
-    """Note an arrival in a part."""
-    query.mark[part] = query.counts[GENERATION]
-    query.arrive[part] = tick
-    query.paid[part] = paid
-    query.before[part] = before
-    label = int(query.counts[LABELS])
-    query.counts[LABELS] += 1
-    query.part[label] = part
-    query.worth[label] = paid
-    query.later[label] = query.head[bucket]
-    query.head[bucket] = label
-    query.counts[LEAST] = min(int(query.counts[LEAST]), bucket)
-    query.counts[TOP] = max(int(query.counts[TOP]), bucket)
+        query.paid[part] = paid
+        bucket = min(paid + rest - least + greed * rest // WHOLE, BUCKETS - 1)
+        reach(query.labels, part, tick, before, bucket)
 
 
 @compiled
@@ -211,7 +182,7 @@ def write_soft_path(stays: Stays, query: SoftQuery, found: int, paths: Paths, ro
     visits = 0
     part = found
     while part != NONE:
-        before = int(query.before[part])
+        before = int(query.labels.before[part])
         visits += before == NONE or stays.place[before // 2] != stays.place[part // 2]
         part = before
     if visits > paths.place[row].size:
@@ -219,10 +190,10 @@ def write_soft_path(stays: Stays, query: SoftQuery, found: int, paths: Paths, ro
     paths.size[row] = visits
     part = found
     while part != NONE:
-        before = int(query.before[part])
+        before = int(query.labels.before[part])
         if before == NONE or stays.place[before // 2] != stays.place[part // 2]:
             visits -= 1
             paths.place[row][visits] = stays.place[part // 2]
-            paths.enter[row][visits] = query.arrive[part]
+            paths.enter[row][visits] = query.labels.arrive[part]
         part = before
     return True
