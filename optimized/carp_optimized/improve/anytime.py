@@ -19,7 +19,7 @@ from carp_optimized.improve.crowds import crowd_of, near
 from carp_optimized.improve.holding import plan_holding_starts
 from carp_optimized.improve.planning import Found, plan_crowd, time_of_visit
 from carp_optimized.improve.repair import plan_failed_first
-from carp_optimized.improve.settling import settled
+from carp_optimized.settling import settled
 from carp_spec import Instance, Solution
 from carp_spec.inputs.options import require_polish_options
 from carp_spec.inputs.values import require_instance

@@ -16,8 +16,8 @@ from typing import TypeAlias
 
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.lacam import plans_by_steps
-from carp_optimized.improve.settling import settled
 from carp_optimized.planners import polish_while
+from carp_optimized.settling import settled
 from carp_spec import Instance, Plan, RobotId, Solution, Visit, total_cost
 from carp_spec.joint_rules import JOINT_RULES
 from carp_spec.requests import sound_solution
