@@ -24,7 +24,7 @@ from carp_optimized.improve.rounds import (
     play,
     put_all,
 )
-from carp_optimized.improve.sipp import GREED, no_query
+from carp_optimized.improve.sipp import EFFORT, GREED, WHOLE, no_query
 from carp_optimized.improve.soft_sipp import no_soft_query
 from carp_optimized.improve.stays import Paths, no_paths, no_stays, with_more_room
 from carp_optimized.jit.kinds import Ints, IntTable
@@ -32,6 +32,8 @@ from carp_optimized.jit.references import Native
 
 WORK = 1 << 15
 """The labels that one compiled call expands before it looks whether to go on: some milliseconds."""
+SLOW, GREEDIEST = 32, 8 * WHOLE
+"""After so many calls that do not halve those that wait, ways through others are twice as greedy, up to this."""
 PART = 256
 """The robots whose stays one compiled call adds."""
 LONGER = 32
@@ -132,32 +134,40 @@ class Improving:
         self.rounds.query.counts[GREED] = greed
         self._go_through(plan_each, order, goes_on)
 
-    def plan_first(self, order: Ints, goes_on: Callable[[], bool], greed: int) -> None:
-        """Plan robots that have no paths yet, one after the other, those that find none left out."""
-        self.rounds.query.counts[GREED] = greed
-        self._go_through(plan_first, order, goes_on)
+    def plan_first(self, order: Ints, goes_on: Callable[[], bool], greed: int, effort: int) -> None:
+        """Plan robots that have no paths yet, one after the other, those that find none left out.
 
-    def make_way(self, goes_on: Callable[[int], bool], greed: int) -> Paths:
-        """Plan robots that have no paths, others again that were in their way; `goes_on` gets the number that wait.
-
-        Returns paths of all robots, or those when few waited.
+        They look at `effort` gaps at most.
         """
         self.rounds.query.counts[GREED] = greed
+        self.rounds.query.counts[EFFORT] = effort
+        self._go_through(plan_first, order, goes_on)
+
+    def make_way(self, goes_on: Callable[[int], bool]) -> Paths:
+        """Plan robots that `plan_first` has left out, and others again that were in their way.
+
+        `goes_on` gets the number that wait. Returns paths of all robots, or those when few waited.
+        """
         missing = np.flatnonzero(self.rounds.paths.size == 0)
         waiting = np.zeros(self.rounds.paths.size.size, np.int32)
         waiting[: missing.size] = missing
         fewest = count = missing.size
         met = np.zeros(waiting.size, np.int32)
+        greed, calls = WHOLE, 0
         soft = Native(no_soft_query(self.rounds.stays, met))
         self._remember()
         while count > 0 and goes_on(count):
+            soft.fields.labels.counts[GREED] = greed
             count = make_way(self._native, soft, waiting, count, WORK)
+            calls += 1
+            if calls == SLOW:
+                greed, calls = min(2 * greed, GREEDIEST), 0
             if count < 0:
                 count = ~count
                 self._make_room()
                 soft = Native(no_soft_query(self.rounds.stays, met))
             if 0 < 2 * count <= fewest:  # copies of many long paths take long
-                fewest = count
+                fewest, calls = count, 0
                 self._remember()
         return self.rounds.best if count > 0 else self.rounds.paths
 

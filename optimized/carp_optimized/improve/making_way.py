@@ -6,7 +6,7 @@ other out for ever.
 """
 
 from carp_optimized.improve.rounds import MISSED, Rounds, choice, rounds_at
-from carp_optimized.improve.sipp import EXPANDED, GREED, find_path
+from carp_optimized.improve.sipp import EXPANDED, find_path
 from carp_optimized.improve.soft_sipp import SoftQuery, find_soft_path, soft_query_at
 from carp_optimized.improve.stays import drop, later_than, leave_of, put, robot_at
 from carp_optimized.jit.compiling import compiled, entry
@@ -32,8 +32,7 @@ def make_way(native: Native[Rounds], soft: Native[SoftQuery], waiting: Ints, cou
         waiting[at] = waiting[count]
         if not find_path(state.crowd, state.stays, state.query, robot, NEVER - 1, state.paths, robot):
             state.counts[MISSED] += 1
-            greed = int(state.query.counts[GREED])
-            if not find_soft_path(state.crowd, state.stays, query, robot, greed, state.paths, robot):
+            if not find_soft_path(state.crowd, state.stays, query, robot, state.paths, robot):
                 state.paths.size[robot] = 0
                 waiting[count] = robot
                 return count + 1

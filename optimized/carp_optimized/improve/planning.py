@@ -33,6 +33,7 @@ from carp_optimized.improve.guides import guides_of
 from carp_optimized.improve.improving import LONGER, Improving, arrivals, paths_of
 from carp_optimized.improve.lacam import RUNNING, STEPS, Search
 from carp_optimized.improve.rounds import GREEDY, SURE
+from carp_optimized.improve.sipp import UNTIL_FOUND
 from carp_optimized.improve.stays import Paths, no_paths
 from carp_optimized.jit.kinds import Ints, IntTable
 from carp_optimized.jit.references import Native
@@ -46,12 +47,14 @@ WORK = 1 << 15
 """The work of one compiled call: some milliseconds."""
 PART = 32
 """The robots whose distances one compiled call measures."""
-MEASURING = 0.6
+MEASURING = 0.7
 """The part of the time in which the distances of all robots must be measured; else only the nearest are planned."""
+DECIDED = 1 / 32
+"""The part of the time that measuring must have taken before that is decided: the first few may take longer."""
 BEYOND = 64
 """How much further than to its start the distances of a robot are then measured."""
 SEARCHING, GUIDING, GUIDED, LAST, ALL = 3, 4, 5, 6, 8
-"""The eighths of the time after which LaCAM and prioritized planning end, then guides, then LaCAM with guides.
+"""The eighths of the time after which prioritized planning ends, then LaCAM and guides, then LaCAM with guides.
 
 If nothing has found plans for all, LaCAM goes on, and what is left is for prioritized planning of as many as possible.
 """
@@ -61,6 +64,11 @@ HOPE, MANY = 8, 8
 """It gives up after one of `HOPE` parts of its time if it has missed more than one of `MANY` robots."""
 SOME, PATIENCE = 64, 3
 """If a pass has missed at most one of `SOME` robots, so many times its time is for these."""
+EFFORT = 1000
+"""The gaps that a query may look at before the robot takes a way through others: who goes far around comes late.
+
+In larger crowds it may look at all, as ways through others take longer there.
+"""
 LESS = ((0, 5), (GREEDY // 4, 2))
 """Less greed than `GREEDY`, and how many times as long prioritized planning takes with it."""
 JAMMED = 4
@@ -70,7 +78,7 @@ NOISE = (2, 64, 1, 4, 2, 64)
 LARGE, CROWDED = 2000, 5
 """With more robots there is no time for other orders, nor for any if LaCAM's paths are 2.5 times the shortest ways."""
 LONGEST = 700
-"""The visits of a path by prioritized planning, or as many as a path by LaCAM has: a way through others may be long."""
+"""The visits of a path by prioritized planning, or twice those of the longest way: one through others may be long."""
 CYCLES, LEAVING, CHOOSING = 8, 1, 7
 """The cycles; the one that leaves the better start for the worse one, and the one that chooses the best paths."""
 FEW, SPARSE = 8, 8
@@ -217,10 +225,11 @@ def _measured(crowd: Crowd, timer: Clock) -> bool:
     """Whether the distances of all robots are measured, as there is time for it."""
     native = Native(crowd)
     robots = np.arange(crowd.start.size, dtype=np.int32)
-    began = timer.spent
+    began, time = timer.spent, timer.seconds or inf
     for done in range(0, robots.size, PART):
-        expected = (timer.spent - began) * (robots.size - done) / max(done, 1)
-        if timer.seconds is not None and timer.spent + expected > MEASURING * timer.seconds:
+        took = timer.spent - began
+        expected = took * (robots.size - done) / max(done, 1)
+        if took > DECIDED * time and timer.spent + expected > MEASURING * time:
             return False
         measure(native, robots, done, min(done + PART, robots.size), FAR)
         if done == 0:  # the machine code may have to be loaded first
@@ -257,7 +266,7 @@ def _nearest(crowd: Crowd, timer: Clock) -> Paths:
         if not timer.goes_on():
             break
         measure(native, part, 0, part.size, BEYOND)
-        improving.plan_first(part, timer.goes_on, GREEDY)
+        improving.plan_first(part, timer.goes_on, GREEDY, UNTIL_FOUND)
         timer.reserve(int(improving.rounds.paths.size.sum()))
     return improving.rounds.paths
 
@@ -268,7 +277,7 @@ def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
     Paths by LaCAM are more promising unless the others are much better.
     """
     search = Search(crowd, seed)
-    ways = _searched(search, STEPS, lambda: timer.goes_on(SEARCHING))
+    ways = _searched(search, STEPS, lambda: timer.goes_on(GUIDING))
     by_steps = [] if ways is None else [paths_of(ways)]
     in_order = _best_in_order(crowd, timer, by_steps, seed)
     has_all = bool(in_order.size.all())
@@ -282,7 +291,7 @@ def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
         by_steps.append(paths_of(ways))
     if has_all or by_steps:
         return sorted(by_steps, key=_sum)[: 1 if has_all else 2] + [in_order] * has_all
-    later = _planned_in_order(crowd, timer, [], seed, ALL, GREEDY, ways_of(crowd))
+    later = _planned_in_order(crowd, timer, seed, ALL, GREEDY, UNTIL_FOUND, ways_of(crowd))
     return [max(in_order, later, key=lambda each: int(np.count_nonzero(each.size)))]
 
 
@@ -293,18 +302,23 @@ def _best_in_order(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: 
     best = no_paths(ways.size, 1)
     if is_large and any(2 * _sum(each) >= CROWDED * int(ways.sum()) for each in by_steps):
         return best
-    longest = 0.0
+    longest, effort = 0.0, UNTIL_FOUND if is_large else EFFORT
     for keys in [ways] if is_large else _orders(ways, seed):
-        if longest >= timer.left(SEARCHING):
+        if 0 < longest >= timer.left(SEARCHING):
             break
         began = timer.spent
-        until = ALL if by_steps and longest == 0 else SEARCHING
-        found = _planned_in_order(crowd, timer, by_steps, seed, until, GREEDY, keys)
+        until = ALL if by_steps and is_large else SEARCHING
+        found = _planned_in_order(crowd, timer, seed, until, GREEDY, effort, keys)
         longest = max(longest, timer.spent - began)
         best = min(best, found, key=_badness)
+        if by_steps and not best.size.all():
+            break
+        if not found.size.all():
+            effort = UNTIL_FOUND
         is_short_first = keys is ways and bool(best.size.all())
         if is_short_first and (is_large or JAMMED * _sum(best) < (JAMMED + 1) * int(ways.sum())):
-            return min(_less_greedy(crowd, timer, by_steps, seed, best, timer.spent - began), best, key=_badness)
+            less = _less_greedy(crowd, timer, by_steps, seed, best, effort, timer.spent - began)
+            return min(less, best, key=_badness)
     return best
 
 
@@ -321,7 +335,9 @@ def _orders(ways: Ints, seed: int) -> Iterator[Ints]:
         yield ways + stream.integers(0, 1 + most * int(ways.mean()), ways.size, dtype=np.int32)
 
 
-def _less_greedy(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int, greedy: Paths, took: float) -> Paths:
+def _less_greedy(
+    crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int, greedy: Paths, effort: int, took: float
+) -> Paths:
     """The paths of a less greedy pass than one that took so long, if there is time for it.
 
     There is more time for what is likely to be much better than paths by LaCAM.
@@ -329,7 +345,7 @@ def _less_greedy(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: in
     until, share = (LAST, 1) if _is_better(crowd, greedy, by_steps) else (SEARCHING, 4)
     for greed, times in LESS:
         if share * times * took < timer.left(until):
-            return _planned_in_order(crowd, timer, by_steps, seed, until, greed, ways_of(crowd))
+            return _planned_in_order(crowd, timer, seed, until, greed, times * effort, ways_of(crowd))
     return greedy
 
 
@@ -356,12 +372,10 @@ def _searched(search: Search, steps: int, goes_on: Callable[[], bool]) -> IntTab
     return search.ways
 
 
-def _planned_in_order(
-    crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int, until: int, greed: int, keys: Ints
-) -> Paths:
+def _planned_in_order(crowd: Crowd, timer: Clock, seed: int, until: int, greed: int, effort: int, keys: Ints) -> Paths:
     """The paths of a pass of prioritized planning, and then of the robots that it missed, as long as they get fewer."""
     robots = crowd.start.size
-    room = max([LONGEST, *(each.place.shape[1] for each in by_steps)])
+    room = max(LONGEST, 2 * int(ways_of(crowd).max()))
     improving = Improving(crowd, no_paths(robots, room), seed)
     begun, time = timer.spent, timer.seconds or inf
 
@@ -369,7 +383,7 @@ def _planned_in_order(
         return timer.goes_on(until) and (is_likely or HOPE * (timer.spent - begun) < time)
 
     order = np.argsort(keys, kind="stable").astype(np.int32)
-    improving.plan_first(order, lambda: goes_on(is_likely=MANY * improving.missed <= robots), greed)
+    improving.plan_first(order, lambda: goes_on(is_likely=MANY * improving.missed <= robots), greed, effort)
     missing = int(np.count_nonzero(improving.rounds.paths.size == 0))
     last = improving.missed + MISSES * robots
     patient = begun + PATIENCE * (timer.spent - begun) * (SOME * missing <= robots)
@@ -379,10 +393,10 @@ def _planned_in_order(
         nonlocal half, halved, halving
         if 2 * waiting <= half:
             half, halved, halving = waiting, timer.spent, timer.spent - halved
-        is_soon = waiting.bit_length() * max(halving, timer.spent - halved) < timer.left(until)
+        is_soon = waiting.bit_length() * max(halving, timer.spent - halved) < 2 * timer.left()
         return improving.missed < last and goes_on(is_likely=is_soon or timer.spent < patient)
 
-    return improving.make_way(gets_fewer, greed)
+    return improving.make_way(gets_fewer)
 
 
 def improved(

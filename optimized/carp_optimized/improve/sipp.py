@@ -17,7 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from carp_optimized.improve.crowds import Crowd
-from carp_optimized.improve.stays import Paths, Stays, later_than
+from carp_optimized.improve.cut_off import Back, is_cut_off, no_back
+from carp_optimized.improve.stays import Paths, Stays, end_of, later_than
 from carp_optimized.jit.compiling import compiled
 from carp_optimized.jit.kinds import Ints, Longs
 from carp_optimized.state.arrays import NEVER, NONE
@@ -26,9 +27,13 @@ BUCKETS = 1 << 14
 """Paths that arrive later than the first bound by more ticks than this are not found."""
 PLACES = 7
 """Places that differ in these bits have their edges turned by other bits of the turn."""
-GENERATION, LABELS, LEAST, TOP, EXPANDED, TURN, GREED = range(7)  # the counts
+GENERATION, LABELS, LEAST, TOP, EXPANDED, TURN, GREED, EFFORT = range(8)  # the counts
+MANY = 256
+"""The gaps after which a query asks whether its goal is cut off."""
 WHOLE = 16
 """The greed of a query that adds the whole way that is left."""
+UNTIL_FOUND = 1 << 60
+"""The gaps that a query looks at if it gives up only when there are no more."""
 
 
 class Query(NamedTuple):
@@ -44,6 +49,7 @@ class Query(NamedTuple):
     gap: Ints
     tick: Ints
     later: Ints
+    back: Back
     counts: Longs
 
 
@@ -62,13 +68,14 @@ def query_of(gaps: int, labels: int) -> Query:
         gap=np.empty(labels, np.int32),
         tick=np.empty(labels, np.int32),
         later=np.empty(labels, np.int32),
-        counts=np.zeros(7, np.int64),
+        back=no_back(),
+        counts=np.array([0, 0, 0, 0, 0, 0, 0, UNTIL_FOUND], np.int64),
     )
 
 
 @compiled
 def find_path(crowd: Crowd, stays: Stays, query: Query, robot: int, latest: int, paths: Paths, row: int) -> bool:
-    """Write a path into the row, without greed the earliest one; `False` if there is none by the tick `latest`."""
+    """Write a path into the row, without greed the earliest one; `False` if none by the tick `latest` is found."""
     start = int(crowd.start[robot])
     goal = int(crowd.goal[robot])
     first = int(stays.first[start])
@@ -83,6 +90,8 @@ def find_path(crowd: Crowd, stays: Stays, query: Query, robot: int, latest: int,
     begin(query)
     reach(query, first, 0, NONE, bucket_of(query, 0, int(crowd.distance[robot][start])))
     found = NONE
+    asks = query.counts[EXPANDED] + MANY
+    most = query.counts[EXPANDED] + query.counts[EFFORT]
     while True:
         label = next_label(query)
         if label == NONE:
@@ -94,7 +103,9 @@ def find_path(crowd: Crowd, stays: Stays, query: Query, robot: int, latest: int,
             found = gap
             break
         query.counts[EXPANDED] += 1
-        if not expand(crowd, stays, query, robot, gap, least, latest):
+        if query.counts[EXPANDED] > most or not expand(crowd, stays, query, robot, gap, least, latest):
+            break
+        if crowd.parks and query.counts[EXPANDED] == asks and is_cut_off(crowd, stays, query.back, robot, latest):
             break
     clear(query)
     return found != NONE and write_path(stays, query, found, paths, row)
@@ -127,13 +138,6 @@ def clear(query: Query) -> None:
     """Leave no labels in the buckets."""
     for k in range(int(query.counts[LEAST]), int(query.counts[TOP]) + 1):
         query.head[k] = NONE
-
-
-@compiled
-def end_of(stays: Stays, gap: int) -> int:
-    """The tick at which the gap ends: the robot that stays next enters."""
-    place = int(stays.place[gap])
-    return int(stays.enter[gap]) if gap < stays.first[place] + stays.size[place] else NEVER
 
 
 @compiled

@@ -2,7 +2,8 @@
 
 A robot may be where another one is, and swap with it, at a price in ticks. So a place's time has parts, gaps and stays
 in turn, and a path leads through both. Of the arrivals in a part the one is kept that comes earliest if its price is
-added. That may miss the best path, which does no harm: whoever is met is planned again.
+added. The search is greedy, as it would look far and wide for a way to meet nobody. All that may miss the best path,
+which does no harm: whoever is met is planned again.
 """
 
 from typing import NamedTuple
@@ -11,19 +12,18 @@ import numpy as np
 
 from carp_optimized.improve.crowds import FAR, Crowd
 from carp_optimized.improve.sipp import (
-    BUCKETS,
     EXPANDED,
     GENERATION,
     LABELS,
-    WHOLE,
     Query,
     begin,
+    bucket_of,
     clear,
     next_label,
     query_of,
     reach,
 )
-from carp_optimized.improve.stays import Paths, Stays, later_than, robot_at
+from carp_optimized.improve.stays import Paths, Stays, end_of, later_than, robot_at, start_of
 from carp_optimized.jit.compiling import compiled
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import dereference
@@ -54,16 +54,14 @@ def no_soft_query(stays: Stays, met: Ints) -> SoftQuery:
 
 
 @compiled
-def find_soft_path(
-    crowd: Crowd, stays: Stays, query: SoftQuery, robot: int, greed: int, paths: Paths, row: int
-) -> bool:
+def find_soft_path(crowd: Crowd, stays: Stays, query: SoftQuery, robot: int, paths: Paths, row: int) -> bool:
     """Write a path into the row; `False` if none is found, or it has too many visits."""
     start = int(crowd.start[robot])
     goal = int(crowd.goal[robot])
     labels = query.labels
     begin(labels)
     least = int(crowd.distance[robot][start])
-    reach_part(query, 2 * int(stays.first[start]), 0, 0, NONE, least, least, greed)
+    reach_part(query, 2 * int(stays.first[start]), 0, 0, NONE, least, least)
     found = NONE
     while True:
         label = next_label(labels)
@@ -77,7 +75,7 @@ def find_soft_path(
             break
         labels.counts[EXPANDED] += 1
         labels.mark[part] = -labels.mark[part]  # a later arrival of less price would come after those that follow
-        if not expand_part(crowd, stays, query, robot, part, least, greed):
+        if not expand_part(crowd, stays, query, robot, part, least):
             break
     clear(labels)
     return found != NONE and write_soft_path(stays, query, found, paths, row)
@@ -92,18 +90,13 @@ def last_part(stays: Stays, place: int) -> int:
 @compiled
 def start_of_part(stays: Stays, part: int) -> int:
     """The tick at which a part of a place's time begins."""
-    k = part // 2
-    if part % 2 == 1:
-        return int(stays.enter[k])
-    return int(stays.leave[k - 1]) if k > stays.first[stays.place[k]] else 0
+    return int(stays.enter[part // 2]) if part % 2 == 1 else start_of(stays, part // 2)
 
 
 @compiled
 def end_of_part(stays: Stays, part: int) -> int:
     """The tick at which a part of a place's time ends."""
-    if part % 2 == 1:
-        return int(stays.leave[part // 2])
-    return NEVER if part == last_part(stays, int(stays.place[part // 2])) else int(stays.enter[part // 2])
+    return int(stays.leave[part // 2]) if part % 2 == 1 else end_of(stays, part // 2)
 
 
 @compiled
@@ -126,7 +119,7 @@ def worth_of(query: SoftQuery, robot: int) -> int:
 
 
 @compiled
-def expand_part(crowd: Crowd, stays: Stays, query: SoftQuery, robot: int, part: int, least: int, greed: int) -> bool:
+def expand_part(crowd: Crowd, stays: Stays, query: SoftQuery, robot: int, part: int, least: int) -> bool:
     """Reach the next part, and all those to which a move leads; `False` if there is no room for that many labels."""
     place = int(stays.place[part // 2])
     distance = crowd.distance[robot]
@@ -135,7 +128,7 @@ def expand_part(crowd: Crowd, stays: Stays, query: SoftQuery, robot: int, part: 
     until = end_of_part(stays, part)
     if until < NEVER:
         paid = until + price + price_of(stays, query, part + 1)
-        reach_part(query, part + 1, until, paid, part, int(distance[place]), least, greed)
+        reach_part(query, part + 1, until, paid, part, int(distance[place]), least)
     for edge in range(int(crowd.first[place]), int(crowd.first[place + 1])):
         target = int(crowd.target[edge])
         rest = int(distance[target])
@@ -151,7 +144,7 @@ def expand_part(crowd: Crowd, stays: Stays, query: SoftQuery, robot: int, part: 
                 paid = tick + price + price_of(stays, query, into)
                 if tick == until:  # only then can another enter the place
                     paid += price_of_move(stays, query, place, target, tick)
-                reach_part(query, into, tick, paid, part, rest, least, greed)
+                reach_part(query, into, tick, paid, part, rest, least)
             into += 1
     return True
 
@@ -164,15 +157,13 @@ def part_at(stays: Stays, place: int, tick: int) -> int:
 
 
 @compiled
-def reach_part(
-    query: SoftQuery, part: int, tick: int, paid: int, before: int, rest: int, least: int, greed: int
-) -> None:
+def reach_part(query: SoftQuery, part: int, tick: int, paid: int, before: int, rest: int, least: int) -> None:
     """Note an arrival in a part, unless that was left, or has one that is as good."""
     mark = int(query.labels.mark[part])
     now = int(query.labels.counts[GENERATION])
     if mark != -now and (mark != now or paid < query.paid[part]):
         query.paid[part] = paid
-        bucket = min(paid + rest - least + greed * rest // WHOLE, BUCKETS - 1)
+        bucket = bucket_of(query.labels, paid + rest - least, rest)
         reach(query.labels, part, tick, before, bucket)
 
 

@@ -87,6 +87,19 @@ def later_than(stays: Stays, place: int, tick: int) -> int:
 
 
 @compiled
+def start_of(stays: Stays, gap: int) -> int:
+    """The tick at which the gap before a stay begins: the robot that stays there before has left."""
+    return int(stays.leave[gap - 1]) if gap > stays.first[stays.place[gap]] else 0
+
+
+@compiled
+def end_of(stays: Stays, gap: int) -> int:
+    """The tick at which the gap before a stay ends: its robot enters."""
+    place = int(stays.place[gap])
+    return int(stays.enter[gap]) if gap < stays.first[place] + stays.size[place] else NEVER
+
+
+@compiled
 def robot_at(stays: Stays, place: int, tick: int) -> int:
     """The robot that is in the place at the tick, or `NONE`."""
     at = int(stays.first[place]) + later_than(stays, place, tick) - 1

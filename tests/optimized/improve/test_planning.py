@@ -14,7 +14,6 @@ from carp_optimized.improve.improving import arrivals, paths_of
 from carp_optimized.improve.lacam import Search, plans_by_steps
 from carp_optimized.improve.planning import improve_crowd
 from carp_optimized.improve.rounds import GREEDY
-from carp_optimized.improve.stays import no_paths
 from carp_optimized.jit.references import Native
 from carp_spec import AfterGoal, Instance, RobotId, Solution, judge, total_cost
 from carproof.generate import Fleet, Grid, grid_instance
@@ -82,18 +81,18 @@ def test_rounds_from_two_starts_end_no_worse_than_either_in_whatever_order_they_
     search.go(10**6)
     assert search.ways is not None
     steps = paths_of(search.ways)
-    starts = [steps, planning._planned_in_order(found, always, [steps], 0, planning.ALL, GREEDY, ways_of(found))]
+    starts = [steps, planning._planned_in_order(found, always, 0, planning.ALL, GREEDY, 30, ways_of(found))]
     for ordered in (starts, starts[::-1]):
         ended = planning.improved(found, ordered, iterations, always, 0, lambda *_: None)
         assert arrivals(ended).sum() <= min(arrivals(each).sum() for each in starts)
 
 
-def test_a_way_through_others_has_room_for_more_visits_than_paths_by_lacam() -> None:
+def test_a_way_through_others_has_room_for_more_visits_than_the_longest_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(planning, "LONGEST", 1)
     found = crowd_of(crowd(12, 60))
     measure(Native(found), np.arange(60, dtype=np.int32), 0, 60, FAR)
     always = planning.Clock(None, process_time, 0.0)
-    short = no_paths(60, 2)
-    planned = planning._planned_in_order(found, always, [short], 0, planning.ALL, GREEDY, ways_of(found))
+    planned = planning._planned_in_order(found, always, 0, planning.ALL, GREEDY, 30, ways_of(found))
     assert planned.size.all()
 
 

@@ -9,6 +9,7 @@ from carp_optimized.improve.crowds import FAR, Crowd, crowd_of, measure
 from carp_optimized.improve.improving import Improving, arrivals
 from carp_optimized.improve.planning import solution_along
 from carp_optimized.improve.rounds import DEGREES, GREEDY
+from carp_optimized.improve.sipp import UNTIL_FOUND
 from carp_optimized.improve.stays import no_paths
 from carp_optimized.jit.references import Native
 from carp_reference import query
@@ -40,8 +41,8 @@ def planned(instance: Instance, greed: int, last: int) -> Improving:
     """All robots planned in their order without greed, up to the last one with some."""
     improving = Improving(measured(instance), no_paths(ROBOTS, 200))
     order = np.arange(ROBOTS, dtype=np.int32)
-    improving.plan_first(order[:last], never_ends, 0)
-    improving.plan_first(order[last : last + 1], never_ends, greed)
+    improving.plan_first(order[:last], never_ends, 0, UNTIL_FOUND)
+    improving.plan_first(order[last : last + 1], never_ends, greed, UNTIL_FOUND)
     return improving
 
 

@@ -10,6 +10,7 @@ from carp_optimized.improve.crowds import FAR, crowd_of, measure
 from carp_optimized.improve.improving import Improving
 from carp_optimized.improve.planning import solution_along
 from carp_optimized.improve.rounds import GREEDY
+from carp_optimized.improve.sipp import UNTIL_FOUND
 from carp_optimized.improve.stays import no_paths
 from carp_optimized.jit.references import Native
 from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, Solution, judge
@@ -18,16 +19,18 @@ from carproof.generate import Fleet, Grid, grid_instance
 ROBOTS = 60
 
 
-def planned(instance: Instance, order: Sequence[int], *, has_way: bool, greed: int = GREEDY) -> tuple[Solution, int]:
+def planned(
+    instance: Instance, order: Sequence[int], *, has_way: bool, greed: int = GREEDY, effort: int = UNTIL_FOUND
+) -> tuple[Solution, int]:
     """Plans in order, with way made for those that find none or without; and how often nobody's way was free."""
     crowd = crowd_of(instance)
     robots = np.arange(len(instance.robots), dtype=np.int32)
     measure(Native(crowd), robots, 0, robots.size, FAR)
     improving = Improving(crowd, no_paths(robots.size, 400))
-    improving.plan_first(np.array(order, np.int32), lambda: True, greed)
+    improving.plan_first(np.array(order, np.int32), lambda: True, greed, effort)
     paths = improving.rounds.paths
     if has_way:
-        paths = improving.make_way(lambda _: improving.missed < 100 * robots.size, greed)
+        paths = improving.make_way(lambda _: improving.missed < 100 * robots.size)
     return solution_along(instance, instance.robots, paths), improving.missed
 
 
@@ -40,7 +43,10 @@ def test_robots_that_found_no_path_have_one_once_way_is_made(after_goal: AfterGo
         greed = GREEDY * (seed % 3) ** 2
         without, _ = planned(instance, range(ROBOTS), has_way=False, greed=greed)
         found, _ = planned(instance, range(ROBOTS), has_way=True, greed=greed)
+        hasty, _ = planned(instance, range(ROBOTS), has_way=True, greed=greed, effort=10)
         assert judge(instance, without).valid
+        assert judge(instance, hasty).valid
+        assert not hasty.unplanned
         assert judge(instance, found).valid
         assert not found.unplanned
         missing += len(without.unplanned)

@@ -1,0 +1,78 @@
+"""Goals that are cut off: who is left out has no path, says a search of all places and ticks, which is soon known."""
+
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+
+from carp_optimized.improve.crowds import FAR, Crowd, crowd_of, measure
+from carp_optimized.improve.cut_off import is_cut_off
+from carp_optimized.improve.improving import Improving
+from carp_optimized.improve.rounds import GREEDY, Rounds, rounds_at
+from carp_optimized.improve.sipp import EXPANDED, MANY, UNTIL_FOUND
+from carp_optimized.improve.stays import Paths, no_paths
+from carp_optimized.jit.compiling import entry
+from carp_optimized.jit.references import Native
+from carproof.generate import Fleet, Grid, grid_instance
+
+SIDE, ROBOTS = 40, 533
+LAST = 600
+"""A tick after which all robots stand still, and a robot that can come to its goal has done so."""
+
+
+@entry
+def asks(native: Native[Rounds], robot: int) -> bool:
+    state = rounds_at(native)
+    return is_cut_off(state.crowd, state.stays, state.query.back, robot, LAST)
+
+
+def has_path(crowd: Crowd, paths: Paths, robot: int) -> bool:
+    """Whether the robot can come to its goal and stay there: all places that it can be in, tick by tick."""
+    at = np.full((LAST, crowd.first.size - 1), -1, np.int32)
+    for other in np.flatnonzero(paths.size):
+        visits = range(int(paths.size[other]))
+        enters = [*paths.enter[other, : len(visits)].tolist(), LAST]
+        for visit in visits:
+            at[enters[visit] : enters[visit + 1], paths.place[other, visit]] = other
+    source = np.repeat(np.arange(at.shape[1]), np.diff(crowd.first))
+    here = np.zeros(at.shape[1], np.bool_)
+    here[crowd.start[robot]] = True
+    for tick in range(1, LAST):
+        swaps = (at[tick - 1, crowd.target] >= 0) & (at[tick - 1, crowd.target] == at[tick, source])
+        here[crowd.target[here[source] & ~swaps]] = True
+        here &= at[tick] < 0
+    return bool(here[crowd.goal[robot]])
+
+
+def test_who_is_cut_off_has_no_path() -> None:
+    counts = Counter[tuple[bool, bool]]()
+    for seed in range(150):
+        instance = grid_instance(Grid(width=4, height=4, map=0), Fleet(robots=9, seed=seed))
+        crowd = crowd_of(replace(instance, after_goal="park"))
+        order = np.arange(9, dtype=np.int32)
+        measure(Native(crowd), order, 0, 9, FAR)
+        improving = Improving(crowd, no_paths(9, 50))
+        improving.plan_first(order[:8], lambda: True, 0, UNTIL_FOUND)
+        state = improving.rounds
+        is_free = state.stays.size[crowd.start[8]] == 0 or state.stays.enter[state.stays.first[crowd.start[8]]] > 0
+        if is_free:
+            counts[asks(improving._native, 8), has_path(crowd, state.paths, 8)] += 1
+    assert counts[True, True] == 0
+    assert counts[True, False] > counts[False, False]
+    assert counts[False, True] > 10
+
+
+def test_it_is_soon_known_in_a_large_crowd() -> None:
+    instance = grid_instance(Grid(width=SIDE, height=SIDE, map=0), Fleet(robots=ROBOTS))
+    crowd = crowd_of(replace(instance, after_goal="park"))
+    order = np.random.default_rng(0).permutation(ROBOTS).astype(np.int32)
+    measure(Native(crowd), order, 0, ROBOTS, FAR)
+    improving = Improving(crowd, no_paths(ROBOTS, 400))
+    soon = 0
+    for k in range(ROBOTS):
+        before = int(improving.rounds.query.counts[EXPANDED])
+        improving.plan_first(order[k : k + 1], lambda: True, GREEDY, UNTIL_FOUND)
+        if int(improving.rounds.query.counts[EXPANDED]) - before == MANY and not improving.rounds.paths.size[order[k]]:
+            soon += 1
+            assert not has_path(crowd, improving.rounds.paths, int(order[k]))
+    assert soon > 10
