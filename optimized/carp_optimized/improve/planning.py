@@ -2,7 +2,7 @@
 
 First come plans by LaCAM, and by prioritized planning. With the shortest way first, robots that arrive early park
 early, and those that come later go around them. Where that makes jams, passes in other orders follow, else less greedy
-ones. Who finds no path takes one on which it meets few others, and those are planned again. If that is not much better
+ones. Who soon finds no path takes one on which it meets few others, and those are planned again. If that is not much better
 than LaCAM, LaCAM follows guides too. Where nothing ends, as many robots as possible are planned one after the other.
 Then rounds improve the best plans.
 
