@@ -2,9 +2,9 @@
 
 First come plans by LaCAM, and by prioritized planning. With the shortest way first, robots that arrive early park
 early, and those that come later go around them. Where that makes jams, passes in other orders follow, else less greedy
-ones. Who soon finds no path takes one on which it meets few others, and those are planned again. If that is not much better
-than LaCAM, LaCAM follows guides too. Where nothing ends, as many robots as possible are planned one after the other.
-Then rounds improve the best plans.
+ones. Who soon finds no path takes one on which it meets few others, and those are planned again. If that is not much
+better than LaCAM, LaCAM follows guides too. Where nothing ends, as many robots as possible are planned one after the
+other. Then rounds improve the best plans.
 
 They may raise the sum for a while (simulated annealing, Kirkpatrick et al. 1983): on average by a share of a robot's
 mean delay, which falls to 0 as the cube of what is left of the cycle. There are several cycles, each from the best
