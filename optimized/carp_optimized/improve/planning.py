@@ -53,10 +53,12 @@ DECIDED = 1 / 32
 """The part of the time that measuring must have taken before that is decided: the first few may take longer."""
 BEYOND = 64
 """How much further than to its start the distances of a robot are then measured."""
-SEARCHING, GUIDING, GUIDED, LAST, ALL = 3, 4, 5, 6, 8
+SEARCHING, GUIDING, GUIDED, LAST, LATEST, ALL = 3, 4, 5, 6, 7, 8
 """The eighths of the time after which prioritized planning ends, then LaCAM and guides, then LaCAM with guides.
 
-If nothing has found plans for all, LaCAM goes on, and what is left is for prioritized planning of as many as possible.
+If LaCAM has plans, guides may take until `GUIDED` and LaCAM with them until `LATEST`: where that matters, rounds gain
+little. If nothing has found plans for all, LaCAM goes on until `LAST`, and what is left is for prioritized planning of
+as many as possible.
 """
 MISSES = 8
 """Prioritized planning gives up when robots have found no path this often, on average."""
@@ -75,8 +77,8 @@ JAMMED = 4
 """Other orders are tried where the shortest way first makes paths longer by more than one of so many parts."""
 NOISE = (2, 64, 1, 4, 2, 64)
 """The most noise in the orders, in mean ways."""
-LARGE, CROWDED = 2000, 5
-"""With more robots there is no time for other orders, nor for any if LaCAM's paths are 2.5 times the shortest ways."""
+LARGE, CROWDED = 2000, 4
+"""With more robots there is no time for other orders, nor for any if LaCAM's paths are twice the shortest ways."""
 LONGEST = 700
 """The visits of a path by prioritized planning, or twice those of the longest way: one through others may be long."""
 CYCLES, LEAVING, CHOOSING = 8, 1, 7
@@ -283,8 +285,9 @@ def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
     has_all = bool(in_order.size.all())
     if has_all and _is_better(crowd, in_order, by_steps):
         return [in_order, *by_steps]
-    guides = guides_of(crowd, lambda: timer.goes_on(GUIDING))
-    ways = _searched(Search(crowd, seed, guides), STEPS, lambda: timer.goes_on(GUIDED))
+    until, last = (GUIDED, LATEST) if by_steps else (GUIDING, GUIDED)
+    guides = guides_of(crowd, lambda: timer.goes_on(until))
+    ways = _searched(Search(crowd, seed, guides), STEPS, lambda: timer.goes_on(last))
     if ways is None and not by_steps and not has_all:
         ways = _searched(search, STEPS if timer.seconds is None else NO_LIMIT, lambda: timer.goes_on(LAST))
     if ways is not None:
