@@ -11,7 +11,7 @@ take half as long, and plans by LaCAM are as good. Source: optimised use of spac
 it is put before LaCAM by Okumura 2024.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -29,7 +29,8 @@ SLACK = 10
 WIDTH = SLACK + 1
 PART = 8
 """The robots whose guides one compiled call looks for."""
-PASSES = 2
+PASSES = 4
+"""Plans by LaCAM after each differ by a few percent, and not in one direction: the best are taken."""
 MEETING = 1 << 40
 """What a meeting counts in a key, more than any way and slack."""
 LATER = 1 << 20
@@ -87,17 +88,18 @@ def no_guides(crowd: Crowd) -> Guides:
     )
 
 
-def guides_of(crowd: Crowd, goes_on: Callable[[], bool]) -> Guides:
-    """Guides of the robots, as good as there is time for."""
+def guides_of(crowd: Crowd, goes_on: Callable[[], bool]) -> Iterator[Guides]:
+    """Guides of the robots after each pass, the last of which may end early for want of time."""
     guides = no_guides(crowd)
     native = Native(guides)
     order = np.argsort(-ways_of(crowd), kind="stable").astype(np.int32)
     for _ in range(PASSES):
         for begin in range(0, order.size, PART):
             if not goes_on():
-                return guides
+                yield guides
+                return
             find_guides(native, order, begin, min(begin + PART, order.size))
-    return guides
+        yield guides
 
 
 @entry

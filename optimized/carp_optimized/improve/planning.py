@@ -35,7 +35,7 @@ from carp_optimized.improve.lacam import RUNNING, STEPS, Search
 from carp_optimized.improve.rounds import GREEDY, SURE
 from carp_optimized.improve.sipp import UNTIL_FOUND
 from carp_optimized.improve.stays import Paths, no_paths
-from carp_optimized.jit.kinds import Ints, IntTable
+from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
 from carp_optimized.state.arrays import NO_LIMIT
 from carp_spec import Instance, Plan, Robot, Solution, Visit
@@ -279,19 +279,19 @@ def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
     Paths by LaCAM are more promising unless the others are much better.
     """
     search = Search(crowd, seed)
-    ways = _searched(search, STEPS, lambda: timer.goes_on(GUIDING))
-    by_steps = [] if ways is None else [paths_of(ways)]
+    by_steps = _searched(search, STEPS, lambda: timer.goes_on(GUIDING))
     in_order = _best_in_order(crowd, timer, by_steps, seed)
     has_all = bool(in_order.size.all())
     if has_all and _is_better(crowd, in_order, by_steps):
         return [in_order, *by_steps]
     until, last = (GUIDED, LATEST) if by_steps else (GUIDING, GUIDED)
-    guides = guides_of(crowd, lambda: timer.goes_on(until))
-    ways = _searched(Search(crowd, seed, guides), STEPS, lambda: timer.goes_on(last))
-    if ways is None and not by_steps and not has_all:
-        ways = _searched(search, STEPS if timer.seconds is None else NO_LIMIT, lambda: timer.goes_on(LAST))
-    if ways is not None:
-        by_steps.append(paths_of(ways))
+    for guides in guides_of(crowd, lambda: timer.goes_on(until)):
+        found = _searched(Search(crowd, seed, guides), STEPS, lambda: timer.goes_on(last))
+        if not found:
+            break
+        by_steps += found
+    if not by_steps and not has_all:
+        by_steps = _searched(search, STEPS if timer.seconds is None else NO_LIMIT, lambda: timer.goes_on(LAST))
     if has_all or by_steps:
         return sorted(by_steps, key=_sum)[: 1 if has_all else 2] + [in_order] * has_all
     later = _planned_in_order(crowd, timer, seed, ALL, GREEDY, UNTIL_FOUND, ways_of(crowd))
@@ -367,12 +367,12 @@ def _sum(paths: Paths) -> int:
     return int(arrivals(paths).sum())
 
 
-def _searched(search: Search, steps: int, goes_on: Callable[[], bool]) -> IntTable | None:
-    """The places of all robots, tick by tick, if they are found in that many steps and in time."""
+def _searched(search: Search, steps: int, goes_on: Callable[[], bool]) -> list[Paths]:
+    """The paths of all robots by LaCAM, if they are found in that many steps and in time."""
     last = min(search.tried + steps, NO_LIMIT)
     while search.outcome == RUNNING and search.tried < last and goes_on():
         search.go(8)
-    return search.ways
+    return [] if search.ways is None else [paths_of(search.ways)]
 
 
 def _planned_in_order(crowd: Crowd, timer: Clock, seed: int, until: int, greed: int, effort: int, keys: Ints) -> Paths:
