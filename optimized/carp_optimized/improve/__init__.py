@@ -1,1 +1,1 @@
-"""Plans that get better until the time is over, for robots that move a step a tick (classical MAPF)."""
+"""Plans that get better until the time is over."""

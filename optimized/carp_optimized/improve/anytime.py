@@ -13,9 +13,9 @@ from time import perf_counter
 import numpy as np
 
 import carp_optimized
+from carp_optimized.crowds.crowd import crowd_of, near
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.annealing import BRIEF, anneal
-from carp_optimized.improve.crowds import crowd_of, near
 from carp_optimized.improve.holding import plan_holding_starts
 from carp_optimized.improve.planning import Found, plan_crowd, time_of_visit
 from carp_optimized.improve.repair import plan_failed_first

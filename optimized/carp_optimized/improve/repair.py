@@ -5,7 +5,7 @@ the order. So a robot without a plan is planned together with those in its way, 
 2015) with priorities between robots (Ma et al. 2019). The group grows by the outside robot that its members would meet
 first if they were alone. Where no group is found, all robots are planned one after the other, pass after pass; those
 that a pass leaves out come first in the next. Crowds for which that fails too are moved tick by tick, if
-`carp_optimized.improve.lacam` can. Nothing here is trusted: the law judges the plans.
+`carp_optimized.lacam.search` can. Nothing here is trusted: the law judges the plans.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -15,7 +15,7 @@ from itertools import count, islice, takewhile
 from typing import TypeAlias
 
 from carp_optimized.fleet import PlannedFleet
-from carp_optimized.improve.lacam import plans_by_steps
+from carp_optimized.lacam.search import plans_by_steps
 from carp_optimized.planners import polish_while
 from carp_optimized.settling import settled
 from carp_spec import Instance, Plan, RobotId, Solution, Visit, total_cost

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from carp_optimized.improve.crowds import is_stepwise
+from carp_optimized.crowds.crowd import is_stepwise
 from carp_optimized.jit.kinds import Ints, Longs
 from carp_optimized.jit.references import Native
 from carp_optimized.state.arrays import NONE

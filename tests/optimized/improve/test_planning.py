@@ -8,13 +8,15 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from carp_optimized.improve import planning
-from carp_optimized.improve.crowds import FAR, crowd_of, is_stepwise, measure, ways_of
-from carp_optimized.improve.improving import arrivals, paths_of
-from carp_optimized.improve.lacam import Search, plans_by_steps
+from carp_optimized.crowds.crowd import FAR, crowd_of, is_stepwise, measure, ways_of
+from carp_optimized.crowds.improving import arrivals, paths_of
+from carp_optimized.crowds.rounds import GREEDY
+from carp_optimized.improve import first_paths, planning
+from carp_optimized.improve.clock import ALL, Clock
+from carp_optimized.improve.cycles import FEW, SPARSE, improved
 from carp_optimized.improve.planning import improve_crowd
-from carp_optimized.improve.rounds import GREEDY
 from carp_optimized.jit.references import Native
+from carp_optimized.lacam.search import Search, plans_by_steps
 from carp_spec import AfterGoal, Instance, RobotId, Solution, judge, total_cost
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import Sizes, instances
@@ -50,7 +52,7 @@ def test_plans_break_no_rule_are_the_same_again_and_no_worse_than_the_first(inst
 @pytest.mark.parametrize("side", [12, 23])
 @pytest.mark.parametrize("after_goal", ["park", "vanish"])
 def test_rounds_improve_a_crowd_and_its_best_total_never_rises(after_goal: AfterGoal, side: int) -> None:
-    both_starts_are_tried = planning.FEW * 60 <= 3000 and side**2 >= planning.SPARSE * 60
+    both_starts_are_tried = FEW * 60 <= 3000 and side**2 >= SPARSE * 60
     assert both_starts_are_tried == (side == 23)
     instance = crowd(side, 60, after_goal)
     seen: list[int] = []
@@ -65,7 +67,7 @@ def test_rounds_improve_a_crowd_and_its_best_total_never_rises(after_goal: After
 
 @pytest.mark.parametrize("jammed", [0, 10**6])
 def test_plans_are_lawful_with_less_greed_and_with_other_orders(jammed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(planning, "JAMMED", jammed)
+    monkeypatch.setattr(first_paths, "JAMMED", jammed)
     instance = crowd(12, 60)
     found = plan_crowd(instance, iterations=50, seconds=None)
     assert judge(instance, found).valid
@@ -76,23 +78,23 @@ def test_plans_are_lawful_with_less_greed_and_with_other_orders(jammed: int, mon
 def test_rounds_from_two_starts_end_no_worse_than_either_in_whatever_order_they_come(iterations: int) -> None:
     found = crowd_of(crowd(23, 60))
     measure(Native(found), np.arange(60, dtype=np.int32), 0, 60, FAR)
-    always = planning.Clock(None, process_time, 0.0)
+    always = Clock(None, process_time, 0.0)
     search = Search(found)
     search.go(10**6)
     assert search.ways is not None
     steps = paths_of(search.ways)
-    starts = [steps, planning._planned_in_order(found, always, 0, planning.ALL, GREEDY, 30, ways_of(found))]
+    starts = [steps, first_paths.planned_in_order(found, always, 0, ALL, GREEDY, 30, ways_of(found))]
     for ordered in (starts, starts[::-1]):
-        ended = planning.improved(found, ordered, iterations, always, 0, lambda *_: None)
+        ended = improved(found, ordered, iterations, always, 0, lambda *_: None)
         assert arrivals(ended).sum() <= min(arrivals(each).sum() for each in starts)
 
 
 def test_a_way_through_others_has_room_for_more_visits_than_the_longest_way(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(planning, "LONGEST", 1)
+    monkeypatch.setattr(first_paths, "LONGEST", 1)
     found = crowd_of(crowd(12, 60))
     measure(Native(found), np.arange(60, dtype=np.int32), 0, 60, FAR)
-    always = planning.Clock(None, process_time, 0.0)
-    planned = planning._planned_in_order(found, always, 0, planning.ALL, GREEDY, 30, ways_of(found))
+    always = Clock(None, process_time, 0.0)
+    planned = first_paths.planned_in_order(found, always, 0, ALL, GREEDY, 30, ways_of(found))
     assert planned.size.all()
 
 

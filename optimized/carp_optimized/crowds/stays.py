@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carp_optimized.improve.crowds import Crowd
+from carp_optimized.crowds.crowd import Crowd
 from carp_optimized.jit.compiling import compiled
 from carp_optimized.jit.kinds import Ints, IntTable
 from carp_optimized.state.arrays import NEVER, NONE

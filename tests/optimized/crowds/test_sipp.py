@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from carp_optimized.improve.crowds import FAR, Crowd, crowd_of, measure
-from carp_optimized.improve.improving import Improving, arrivals
+from carp_optimized.crowds.crowd import FAR, Crowd, crowd_of, measure
+from carp_optimized.crowds.improving import Improving, arrivals
+from carp_optimized.crowds.rounds import DEGREES, GREEDY
+from carp_optimized.crowds.sipp import UNTIL_FOUND
+from carp_optimized.crowds.stays import no_paths
 from carp_optimized.improve.planning import solution_along
-from carp_optimized.improve.rounds import DEGREES, GREEDY
-from carp_optimized.improve.sipp import UNTIL_FOUND
-from carp_optimized.improve.stays import no_paths
 from carp_optimized.jit.references import Native
 from carp_reference import query
 from carp_spec import AfterGoal, Instance, judge

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carp_optimized.improve.crowds import Crowd
-from carp_optimized.improve.stays import Stays, end_of, start_of
+from carp_optimized.crowds.crowd import Crowd
+from carp_optimized.crowds.stays import Stays, end_of, start_of
 from carp_optimized.jit.compiling import compiled
 from carp_optimized.jit.kinds import Ints
 

@@ -6,10 +6,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from carp_optimized.improve.crowds import FAR, Crowd, crowd_of, measure
-from carp_optimized.improve.guides import SLACK, Guides, entry_of, find_guides, guides_at, guides_of, uses_of
+from carp_optimized.crowds.crowd import FAR, Crowd, crowd_of, measure
 from carp_optimized.jit.compiling import entry
 from carp_optimized.jit.references import Native
+from carp_optimized.lacam.guides import SLACK, Guides, entry_of, find_guides, guides_at, guides_of, uses_of
 from carproof.generate import Fleet, Grid, grid_instance
 
 ROBOTS = 40

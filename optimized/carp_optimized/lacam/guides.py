@@ -3,7 +3,7 @@
 Robots that each go the shortest way meet head-on where a detour of a few ticks would avoid it. So each gets a guide,
 one after the other: of all ways that are at most `SLACK` ticks longer than the shortest, one that meets the fewest
 guides of others, in a place at a tick or on an edge from opposite sides. In further passes each is looked for again.
-`carp_optimized.improve.pibt` prefers the next place of the guide.
+`carp_optimized.lacam.pibt` prefers the next place of the guide.
 
 A way that comes to a place later than another, and has met as many, is not looked at further. It could meet fewer
 from there on, so what is found is no longer the best; but a shortest way that meets fewer is never missed, searches
@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carp_optimized.improve.crowds import FAR, Crowd, ways_of
+from carp_optimized.crowds.crowd import FAR, Crowd, ways_of
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints, Longs
 from carp_optimized.jit.references import Native, dereference

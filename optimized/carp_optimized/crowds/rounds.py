@@ -1,6 +1,6 @@
 """Rounds of large neighbourhood search over a crowd (MAPF-LNS, Li et al. 2021): one compiled call plays many.
 
-A round takes a few robots out, plans them one after the other by `carp_optimized.improve.sipp`, and keeps the new paths
+A round takes a few robots out, plans them one after the other by `carp_optimized.crowds.sipp`, and keeps the new paths
 if the sum of their arrivals is not above the sum before by more than a raise that is drawn (simulated annealing). The
 best paths seen are kept apart. A path is looked for only up to the arrival at which the sum could still be kept.
 
@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carp_optimized.improve.crowds import Crowd
-from carp_optimized.improve.sipp import EXPANDED, GREED, TURN, WHOLE, Query, find_path
-from carp_optimized.improve.stays import Paths, Stays, arrival, copy_path, drop, later_than, put, robot_at
+from carp_optimized.crowds.crowd import Crowd
+from carp_optimized.crowds.sipp import EXPANDED, GREED, TURN, WHOLE, Query, find_path
+from carp_optimized.crowds.stays import Paths, Stays, arrival, copy_path, drop, later_than, put, robot_at
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints, Longs, Numbers
 from carp_optimized.jit.references import Native, dereference

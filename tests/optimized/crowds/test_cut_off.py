@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from carp_optimized.improve.crowds import FAR, Crowd, crowd_of, measure
-from carp_optimized.improve.cut_off import is_cut_off
-from carp_optimized.improve.improving import Improving
-from carp_optimized.improve.rounds import GREEDY, Rounds, rounds_at
-from carp_optimized.improve.sipp import EXPANDED, MANY, UNTIL_FOUND
-from carp_optimized.improve.stays import Paths, no_paths
+from carp_optimized.crowds.crowd import FAR, Crowd, crowd_of, measure
+from carp_optimized.crowds.cut_off import is_cut_off
+from carp_optimized.crowds.improving import Improving
+from carp_optimized.crowds.rounds import GREEDY, Rounds, rounds_at
+from carp_optimized.crowds.sipp import EXPANDED, MANY, UNTIL_FOUND
+from carp_optimized.crowds.stays import Paths, no_paths
 from carp_optimized.jit.compiling import entry
 from carp_optimized.jit.references import Native
 from carproof.generate import Fleet, Grid, grid_instance

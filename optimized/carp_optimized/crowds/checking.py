@@ -6,8 +6,8 @@ ten seconds.
 
 import numpy as np
 
-from carp_optimized.improve.crowds import Crowd
-from carp_optimized.improve.stays import Paths
+from carp_optimized.crowds.crowd import Crowd
+from carp_optimized.crowds.stays import Paths
 from carp_optimized.jit.kinds import Longs
 from carp_optimized.state.arrays import NEVER
 

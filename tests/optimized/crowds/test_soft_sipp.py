@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from carp_optimized.improve.crowds import FAR, crowd_of, measure
-from carp_optimized.improve.improving import Improving
+from carp_optimized.crowds.crowd import FAR, crowd_of, measure
+from carp_optimized.crowds.improving import Improving
+from carp_optimized.crowds.rounds import GREEDY
+from carp_optimized.crowds.sipp import UNTIL_FOUND
+from carp_optimized.crowds.stays import no_paths
 from carp_optimized.improve.planning import solution_along
-from carp_optimized.improve.rounds import GREEDY
-from carp_optimized.improve.sipp import UNTIL_FOUND
-from carp_optimized.improve.stays import no_paths
 from carp_optimized.jit.references import Native
 from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, Solution, judge
 from carproof.generate import Fleet, Grid, grid_instance

@@ -5,10 +5,10 @@ place in the order that it would have needed, and all others keep their plans. T
 other out for ever.
 """
 
-from carp_optimized.improve.rounds import MISSED, Rounds, choice, rounds_at
-from carp_optimized.improve.sipp import EXPANDED, find_path
-from carp_optimized.improve.soft_sipp import SoftQuery, find_soft_path, soft_query_at
-from carp_optimized.improve.stays import drop, later_than, leave_of, put, robot_at
+from carp_optimized.crowds.rounds import MISSED, Rounds, choice, rounds_at
+from carp_optimized.crowds.sipp import EXPANDED, find_path
+from carp_optimized.crowds.soft_sipp import SoftQuery, find_soft_path, soft_query_at
+from carp_optimized.crowds.stays import drop, later_than, leave_of, put, robot_at
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native

@@ -2,8 +2,8 @@
 
 A configuration is the place of every robot at a tick. The search is depth-first over configurations, each with ever
 longer demands on its successor, which fix the place of one more robot at a time. Successors come from
-`carp_optimized.improve.pibt`. So crowds are planned for which no order of robots works. Totals are far from the least;
-`carp_optimized.improve.rounds` lowers them. Nothing here is trusted: the law judges the plans.
+`carp_optimized.lacam.pibt`. So crowds are planned for which no order of robots works. Totals are far from the least;
+`carp_optimized.crowds.rounds` lowers them. Nothing here is trusted: the law judges the plans.
 """
 
 from collections.abc import Iterator
@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carp_optimized.improve.crowds import FAR, GONE, Crowd, can_begin, crowd_of, is_stepwise, measure, ways_of
-from carp_optimized.improve.guides import Guides
-from carp_optimized.improve.pibt import NOWHERE, Step, begin, choose, end, is_open, no_step, rank_choices, take
+from carp_optimized.crowds.crowd import FAR, GONE, Crowd, can_begin, crowd_of, is_stepwise, measure, ways_of
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints, IntTable, Longs, Numbers
 from carp_optimized.jit.references import Native, dereference
+from carp_optimized.lacam.guides import Guides
+from carp_optimized.lacam.pibt import NOWHERE, Step, begin, choose, end, is_open, no_step, rank_choices, take
 from carp_optimized.neighbourhood.orders import FIRST_MIX, GOLDEN, SECOND_MIX
 from carp_optimized.state.arrays import NONE
 from carp_spec import Instance, Plan, ResourceId, Visit

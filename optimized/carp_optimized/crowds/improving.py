@@ -1,12 +1,12 @@
-"""Paths of a crowd that get better, for as long as they are asked to: the rounds of `carp_optimized.improve.rounds`."""
+"""Paths of a crowd that get better, for as long as they are asked to: the rounds of `carp_optimized.crowds.rounds`."""
 
 from collections.abc import Callable
 
 import numpy as np
 
-from carp_optimized.improve.crowds import GONE, Crowd, ways_of
-from carp_optimized.improve.making_way import make_way
-from carp_optimized.improve.rounds import (
+from carp_optimized.crowds.crowd import GONE, Crowd, ways_of
+from carp_optimized.crowds.making_way import make_way
+from carp_optimized.crowds.rounds import (
     BEST,
     CHANCE,
     DIRTY,
@@ -24,9 +24,9 @@ from carp_optimized.improve.rounds import (
     play,
     put_all,
 )
-from carp_optimized.improve.sipp import EFFORT, GREED, WHOLE, no_query
-from carp_optimized.improve.soft_sipp import no_soft_query
-from carp_optimized.improve.stays import Paths, no_paths, no_stays, with_more_room
+from carp_optimized.crowds.sipp import EFFORT, GREED, WHOLE, no_query
+from carp_optimized.crowds.soft_sipp import no_soft_query
+from carp_optimized.crowds.stays import Paths, no_paths, no_stays, with_more_room
 from carp_optimized.jit.kinds import Ints, IntTable
 from carp_optimized.jit.references import Native
 
@@ -192,6 +192,11 @@ def arrivals(paths: Paths) -> Ints:
     """The ticks at which the robots arrive."""
     last: Ints = paths.enter[np.arange(paths.size.size), paths.size - 1]
     return last
+
+
+def total_of(paths: Paths) -> int:
+    """The sum of arrivals."""
+    return int(arrivals(paths).sum())
 
 
 def paths_of(ways: IntTable) -> Paths:

@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carp_optimized.improve.crowds import Crowd
-from carp_optimized.improve.cut_off import Back, is_cut_off, no_back
-from carp_optimized.improve.stays import Paths, Stays, end_of, later_than
+from carp_optimized.crowds.crowd import Crowd
+from carp_optimized.crowds.cut_off import Back, is_cut_off, no_back
+from carp_optimized.crowds.stays import Paths, Stays, end_of, later_than
 from carp_optimized.jit.compiling import compiled
 from carp_optimized.jit.kinds import Ints, Longs
 from carp_optimized.state.arrays import NEVER, NONE

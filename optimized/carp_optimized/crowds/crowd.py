@@ -20,6 +20,8 @@ GONE = -1
 FAR = 2**15 - 1
 """More than any distance that is measured."""
 LANDMARKS = 8
+PART = 32
+"""The robots that one compiled call measures, so that a clock can be looked at."""
 
 
 class Crowd(NamedTuple):

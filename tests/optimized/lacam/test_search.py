@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 
 from carp_optimized import plan
-from carp_optimized.improve.crowds import is_stepwise
-from carp_optimized.improve.lacam import STEPS, plans_by_steps
+from carp_optimized.crowds.crowd import is_stepwise
+from carp_optimized.lacam.search import STEPS, plans_by_steps
 from carp_spec import AfterGoal, Carp, Instance, Resource, ResourceGraph, Robot, Solution, judge
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.testing.strategies import Sizes, instances

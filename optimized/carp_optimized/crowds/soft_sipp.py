@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carp_optimized.improve.crowds import FAR, Crowd
-from carp_optimized.improve.sipp import (
+from carp_optimized.crowds.crowd import FAR, Crowd
+from carp_optimized.crowds.sipp import (
     EXPANDED,
     GENERATION,
     LABELS,
@@ -23,7 +23,7 @@ from carp_optimized.improve.sipp import (
     query_of,
     reach,
 )
-from carp_optimized.improve.stays import Paths, Stays, end_of, later_than, robot_at, start_of
+from carp_optimized.crowds.stays import Paths, Stays, end_of, later_than, robot_at, start_of
 from carp_optimized.jit.compiling import compiled
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import dereference

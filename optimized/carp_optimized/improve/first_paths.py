@@ -1,0 +1,198 @@
+"""First paths of a crowd: by LaCAM, and by prioritized planning in several orders.
+
+With the shortest way first, robots that arrive early park early, and those that come later go around them. Where that
+makes jams, passes in other orders follow, else less greedy ones. Who soon finds no path takes one on which it meets few
+others, and those are planned again. If that is not much better than LaCAM, LaCAM follows guides too. Where nothing
+ends, as many robots as possible are planned one after the other.
+
+Where there is no time to measure all distances, the nearest robots are planned, with distances that end a little beyond
+their starts.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from math import inf
+
+import numpy as np
+
+from carp_optimized.crowds.crowd import PART, Crowd, measure, near, ways_of
+from carp_optimized.crowds.improving import Improving, arrivals, paths_of, total_of
+from carp_optimized.crowds.rounds import GREEDY
+from carp_optimized.crowds.sipp import UNTIL_FOUND
+from carp_optimized.crowds.stays import Paths, no_paths
+from carp_optimized.improve.clock import ALL, Clock
+from carp_optimized.jit.kinds import Ints
+from carp_optimized.jit.references import Native
+from carp_optimized.lacam.guides import guides_of
+from carp_optimized.lacam.search import RUNNING, STEPS, Search
+from carp_optimized.state.arrays import NO_LIMIT
+
+BEYOND = 64
+"""How much further than to its start the distances of a robot are measured where there is no time for all."""
+SEARCHING, GUIDING, GUIDED, LAST, LATEST = 3, 4, 5, 6, 7
+"""The eighths of the time after which prioritized planning ends, then LaCAM and guides, then LaCAM with guides.
+
+If LaCAM has plans, guides may take until `GUIDED` and LaCAM with them until `LATEST`: where that matters, rounds gain
+little. If nothing has found plans for all, LaCAM goes on until `LAST`, and what is left is for prioritized planning of
+as many as possible.
+"""
+MISSES = 8
+"""Prioritized planning gives up when robots have found no path this often, on average."""
+HOPE, MANY = 8, 8
+"""It gives up after one of `HOPE` parts of its time if it has missed more than one of `MANY` robots."""
+SOME, PATIENCE = 64, 3
+"""If a pass has missed at most one of `SOME` robots, so many times its time is for these."""
+EFFORT = 1000
+"""The gaps that a query may look at before the robot takes a way through others: who goes far around comes late.
+
+In larger crowds it may look at all, as ways through others take longer there.
+"""
+LESS = ((0, 5), (GREEDY // 4, 2))
+"""Less greed than `GREEDY`, and how many times as long prioritized planning takes with it."""
+JAMMED = 4
+"""Other orders are tried where the shortest way first makes paths longer by more than one of so many parts."""
+NOISE = (2, 64, 1, 4, 2, 64)
+"""The most noise in the orders, in mean ways."""
+LARGE, CROWDED = 2000, 4
+"""With more robots there is no time for other orders, nor for any if LaCAM's paths are twice the shortest ways."""
+LONGEST = 700
+"""The visits of a path by prioritized planning, or twice those of the longest way: one through others may be long."""
+
+
+def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
+    """First paths of all robots, the more promising first; those of as many as possible if nothing has all.
+
+    Paths by LaCAM are more promising unless the others are much better.
+    """
+    search = Search(crowd, seed)
+    by_steps = _searched(search, STEPS, lambda: timer.goes_on(GUIDING))
+    in_order = _best_in_order(crowd, timer, by_steps, seed)
+    has_all = bool(in_order.size.all())
+    if has_all and _is_better(crowd, in_order, by_steps):
+        return [in_order, *by_steps]
+    until, last = (GUIDED, LATEST) if by_steps else (GUIDING, GUIDED)
+    for guides in guides_of(crowd, lambda: timer.goes_on(until)):
+        found = _searched(Search(crowd, seed, guides), STEPS, lambda: timer.goes_on(last))
+        if not found:
+            break
+        by_steps += found
+    if not by_steps and not has_all:
+        by_steps = _searched(search, STEPS if timer.seconds is None else NO_LIMIT, lambda: timer.goes_on(LAST))
+    if has_all or by_steps:
+        return sorted(by_steps, key=total_of)[: 1 if has_all else 2] + [in_order] * has_all
+    later = planned_in_order(crowd, timer, seed, ALL, GREEDY, UNTIL_FOUND, ways_of(crowd))
+    return [max(in_order, later, key=lambda each: int(np.count_nonzero(each.size)))]
+
+
+def _best_in_order(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int) -> Paths:
+    """The best paths of greedy passes of prioritized planning, or of a less greedy one, as far as there is time."""
+    ways = ways_of(crowd)
+    is_large = ways.size > LARGE
+    best = no_paths(ways.size, 1)
+    if is_large and any(2 * total_of(each) >= CROWDED * int(ways.sum()) for each in by_steps):
+        return best
+    longest, effort = 0.0, UNTIL_FOUND if is_large else EFFORT
+    for keys in [ways] if is_large else _orders(ways, seed):
+        if 0 < longest >= timer.left(SEARCHING):
+            break
+        began = timer.spent
+        until = ALL if by_steps and is_large else SEARCHING
+        found = planned_in_order(crowd, timer, seed, until, GREEDY, effort, keys)
+        longest = max(longest, timer.spent - began)
+        best = min(best, found, key=_badness)
+        if by_steps and not best.size.all():
+            break
+        if not found.size.all():
+            effort = UNTIL_FOUND
+        is_short_first = keys is ways and bool(best.size.all())
+        if is_short_first and (is_large or JAMMED * total_of(best) < (JAMMED + 1) * int(ways.sum())):
+            less = _less_greedy(crowd, timer, by_steps, seed, best, effort, timer.spent - began)
+            return min(less, best, key=_badness)
+    return best
+
+
+def _orders(ways: Ints, seed: int) -> Iterator[Ints]:
+    """Keys for orders of robots: any order, the shortest and the longest way first, and the shortest with noise.
+
+    The shortest way first is the best order where that leads to few delays. Else robots that park early hold up others.
+    """
+    stream = np.random.default_rng(seed)
+    yield stream.permutation(ways.size).astype(np.int32)
+    yield ways
+    yield -ways
+    for most in NOISE:
+        yield ways + stream.integers(0, 1 + most * int(ways.mean()), ways.size, dtype=np.int32)
+
+
+def _less_greedy(
+    crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int, greedy: Paths, effort: int, took: float
+) -> Paths:
+    """The paths of a less greedy pass than one that took so long, if there is time for it.
+
+    There is more time for what is likely to be much better than paths by LaCAM.
+    """
+    until, share = (LAST, 1) if _is_better(crowd, greedy, by_steps) else (SEARCHING, 4)
+    for greed, times in LESS:
+        if share * times * took < timer.left(until):
+            return planned_in_order(crowd, timer, seed, until, greed, times * effort, ways_of(crowd))
+    return greedy
+
+
+def _badness(paths: Paths) -> tuple[int, int]:
+    """The robots without a path, and the sum of the others' arrivals."""
+    return int(np.count_nonzero(paths.size == 0)), int(arrivals(paths)[paths.size > 0].sum())
+
+
+def _is_better(crowd: Crowd, in_order: Paths, by_steps: Sequence[Paths]) -> bool:
+    """Whether the delays of paths by LaCAM are more than 1.5 times those of others."""
+    least = int(ways_of(crowd).sum())
+    return all(3 * (total_of(in_order) - least) < 2 * (total_of(each) - least) for each in by_steps)
+
+
+def _searched(search: Search, steps: int, goes_on: Callable[[], bool]) -> list[Paths]:
+    """The paths of all robots by LaCAM, if they are found in that many steps and in time."""
+    last = min(search.tried + steps, NO_LIMIT)
+    while search.outcome == RUNNING and search.tried < last and goes_on():
+        search.go(8)
+    return [] if search.ways is None else [paths_of(search.ways)]
+
+
+def planned_in_order(crowd: Crowd, timer: Clock, seed: int, until: int, greed: int, effort: int, keys: Ints) -> Paths:
+    """The paths of a pass of prioritized planning, and then of the robots that it missed, as long as they get fewer."""
+    robots = crowd.start.size
+    room = max(LONGEST, 2 * int(ways_of(crowd).max()))
+    improving = Improving(crowd, no_paths(robots, room), seed)
+    begun, time = timer.spent, timer.seconds or inf
+
+    def goes_on(*, is_likely: bool) -> bool:
+        return timer.goes_on(until) and (is_likely or HOPE * (timer.spent - begun) < time)
+
+    order = np.argsort(keys, kind="stable").astype(np.int32)
+    improving.plan_first(order, lambda: goes_on(is_likely=MANY * improving.missed <= robots), greed, effort)
+    missing = int(np.count_nonzero(improving.rounds.paths.size == 0))
+    last = improving.missed + MISSES * robots
+    patient = begun + PATIENCE * (timer.spent - begun) * (SOME * missing <= robots)
+    half, halved, halving = missing, begun, 0.0
+
+    def gets_fewer(waiting: int) -> bool:
+        nonlocal half, halved, halving
+        if 2 * waiting <= half:
+            half, halved, halving = waiting, timer.spent, timer.spent - halved
+        is_soon = waiting.bit_length() * max(halving, timer.spent - halved) < 2 * timer.left()
+        return improving.missed < last and goes_on(is_likely=is_soon or timer.spent < patient)
+
+    return improving.make_way(gets_fewer)
+
+
+def nearest_paths(crowd: Crowd, timer: Clock) -> Paths:
+    """The paths of as many robots as there is time for, about the nearest first, each measured when it is planned."""
+    native = Native(crowd)
+    order = np.argsort(near(crowd), kind="stable").astype(np.int32)
+    improving = Improving(crowd, no_paths(order.size, LONGEST))
+    for begin in range(0, order.size, PART):
+        part = order[begin : begin + PART]
+        if not timer.goes_on():
+            break
+        measure(native, part, 0, part.size, BEYOND)
+        improving.plan_first(part, timer.goes_on, GREEDY, UNTIL_FOUND)
+        timer.reserve(int(improving.rounds.paths.size.sum()))
+    return improving.rounds.paths

@@ -1,0 +1,1 @@
+"""LaCAM: plans of all robots at once, tick by tick, along guides."""
