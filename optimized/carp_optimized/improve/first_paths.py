@@ -105,7 +105,7 @@ def _best_in_order(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: 
             effort = UNTIL_FOUND
         is_short_first = keys is ways and bool(best.size.all())
         if is_short_first and (is_large or JAMMED * total_of(best) < (JAMMED + 1) * int(ways.sum())):
-            less = _less_greedy(crowd, timer, by_steps, seed, best, effort, timer.spent - began)
+            less = _less_greedy(crowd, timer, by_steps, seed, best, timer.spent - began)
             return min(less, best, key=_badness)
     return best
 
@@ -123,17 +123,16 @@ def _orders(ways: Ints, seed: int) -> Iterator[Ints]:
         yield ways + stream.integers(0, 1 + most * int(ways.mean()), ways.size, dtype=np.int32)
 
 
-def _less_greedy(
-    crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int, greedy: Paths, effort: int, took: float
-) -> Paths:
+def _less_greedy(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int, greedy: Paths, took: float) -> Paths:
     """The paths of a less greedy pass than one that took so long, if there is time for it.
 
-    There is more time for what is likely to be much better than paths by LaCAM.
+    There is more time for what is likely to be much better than paths by LaCAM. Where few robots hold up others, one
+    that goes far around comes earlier than one that makes others be planned again.
     """
     until, share = (LAST, 1) if _is_better(crowd, greedy, by_steps) else (SEARCHING, 4)
     for greed, times in LESS:
         if share * times * took < timer.left(until):
-            return planned_in_order(crowd, timer, seed, until, greed, times * effort, ways_of(crowd))
+            return planned_in_order(crowd, timer, seed, until, greed, UNTIL_FOUND, ways_of(crowd))
     return greedy
 
 
