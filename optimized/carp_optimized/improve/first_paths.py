@@ -52,7 +52,7 @@ JAMMED = 4
 """Other orders are tried where the shortest way first makes paths longer by more than one of so many parts."""
 NOISE = (2, 64, 1, 4, 2, 64)
 """The most noise in the orders, in mean ways."""
-LARGE, CROWDED = 2000, 4
+LARGE, CROWDED = 2000, 2
 """With more robots there is no time for other orders, nor for any if LaCAM's paths are twice the shortest ways."""
 LONGEST = 700
 """The visits of a path by prioritized planning, or twice those of the longest way: one through others may be long."""
@@ -88,7 +88,7 @@ def _best_in_order(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: 
     ways = ways_of(crowd)
     is_large = ways.size > LARGE
     best = no_paths(ways.size, 1)
-    if is_large and any(2 * total_of(each) >= CROWDED * int(ways.sum()) for each in by_steps):
+    if is_large and any(total_of(each) >= CROWDED * int(ways.sum()) for each in by_steps):
         return best
     longest, effort = 0.0, UNTIL_FOUND if is_large else EFFORT
     for keys in [ways] if is_large else _orders(ways, seed):

@@ -6,9 +6,9 @@ guides of others, in a place at a tick or on an edge from opposite sides. In fur
 `carp_optimized.lacam.pibt` prefers the next place of the guide.
 
 A way that comes to a place later than another, and has met as many, is not looked at further. It could meet fewer
-from there on, so what is found is no longer the best; but a shortest way that meets fewer is never missed, searches
-take half as long, and plans by LaCAM are as good. Source: optimised use of space (Han and Yu 2022), as
-it is put before LaCAM by Okumura 2024.
+from there on, so what is found need not be the best. But a shortest way that meets fewer is never missed, searches take
+half as long, and plans by LaCAM are as good. Source: optimised use of space (Han and Yu 2022), as it is put before
+LaCAM by Okumura 2024.
 """
 
 from collections.abc import Callable, Iterator
@@ -37,7 +37,7 @@ LATER = 1 << 20
 COUNTED = 20
 """The bits that count the uses of an entry; the others are its key."""
 LINE = 3
-"""Of a place or edge, the bits that tell its entry from its neighbours' in one line of the cache."""
+"""The last bits of a key, which tell an entry from others in its line of the cache: those of places nearby."""
 
 
 class Guides(NamedTuple):
@@ -121,12 +121,12 @@ def key_of(guides: Guides, tick: int, what: int) -> int:
 
 
 @compiled
-def entry_of(guides: Guides, tick: int, what: int) -> int:
-    """The entry of a place or edge at a tick, or the empty one where it would stand."""
+def entry_of(guides: Guides, key: int) -> int:
+    """The entry of a key, or the empty one where it would stand."""
     last = guides.uses.size - 1
-    mixed = np.uint64(tick * LATER + (what >> LINE)) * GOLDEN
-    at = ((int(np.int64(mixed >> np.uint64(24))) << LINE) + what % (1 << LINE)) & last
-    while guides.uses[at] != 0 and guides.uses[at] >> COUNTED != key_of(guides, tick, what):
+    mixed = np.uint64(key >> LINE) * GOLDEN
+    at = ((int(np.int64(mixed >> np.uint64(24))) << LINE) + key % (1 << LINE)) & last
+    while guides.uses[at] != 0 and guides.uses[at] >> COUNTED != key:
         at = (at + 1) & last
     return int(at)
 
@@ -134,15 +134,16 @@ def entry_of(guides: Guides, tick: int, what: int) -> int:
 @compiled
 def uses_of(guides: Guides, tick: int, what: int) -> int:
     """How many guides use it at the tick."""
-    return int(guides.uses[entry_of(guides, tick, what)] % (1 << COUNTED))
+    return int(guides.uses[entry_of(guides, key_of(guides, tick, what))] % (1 << COUNTED))
 
 
 @compiled
 def count_use(guides: Guides, tick: int, what: int, sign: int) -> None:
     """Add a use, or take it off again."""
-    at = entry_of(guides, tick, what)
+    key = key_of(guides, tick, what)
+    at = entry_of(guides, key)
     if guides.uses[at] == 0:
-        guides.uses[at] = key_of(guides, tick, what) << COUNTED
+        guides.uses[at] = key << COUNTED
     guides.uses[at] += sign
 
 
@@ -189,7 +190,6 @@ def find_guide(guides: Guides, robot: int) -> int:
     push(guides.keys, guides.nodes, 0, least, label)
     size = 1
     while True:
-        key = int(guides.keys[0])
         label = int(guides.nodes[0])
         size -= 1
         replace_root(guides.keys, guides.nodes, size, int(guides.keys[size]), int(guides.nodes[size]))
@@ -197,13 +197,11 @@ def find_guide(guides: Guides, robot: int) -> int:
         slack = label % WIDTH
         if place == goal:
             return label
-        met = int(guides.met[label])
-        if key > met * MEETING + slack * LATER + int(distance[place]):
-            continue
         here = int(guides.popped[place])
         if here // WIDTH == generation and slack >= here % WIDTH:
             continue
         guides.popped[place] = generation * WIDTH + slack
+        met = int(guides.met[label])
         tick = least + slack - int(distance[place]) + 1
         is_entered = uses_of(guides, tick, place) > 0  # as it is if any guide comes the other way on an edge
         for edge in range(int(crowd.first[place]), int(crowd.first[place + 1])):

@@ -9,7 +9,7 @@ import numpy as np
 from carp_optimized.crowds.crowd import FAR, Crowd, crowd_of, measure
 from carp_optimized.jit.compiling import entry
 from carp_optimized.jit.references import Native
-from carp_optimized.lacam.guides import SLACK, Guides, entry_of, find_guides, guides_at, guides_of, uses_of
+from carp_optimized.lacam.guides import SLACK, Guides, find_guides, guides_at, guides_of, uses_of
 from carproof.generate import Fleet, Grid, grid_instance
 
 ROBOTS = 40
@@ -17,9 +17,7 @@ ROBOTS = 40
 
 @entry
 def uses(native: Native[Guides], tick: int, what: int) -> int:
-    """How many guides use it; 0 for what has no entry."""
-    guides = guides_at(native)
-    return uses_of(guides, tick, what) if guides.uses[entry_of(guides, tick, what)] else 0
+    return uses_of(guides_at(native), tick, what)
 
 
 def way(guides: Guides, robot: int) -> list[int]:
