@@ -1,18 +1,18 @@
 """Cases that random instances seldom reach: full arrays, far goals, ended plans, too many plans to remember."""
 
 from dataclasses import replace
-from itertools import count, pairwise
+from itertools import count, cycle, pairwise
 from math import isqrt, sqrt
 
 import numba
 import pytest
-from tests.optimized.towns import TOWNS
 
 import carp_optimized
 import carp_reference
 from carp_optimized.certifying import potentials
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.neighbourhood.distances import term
+from carp_optimized.queries.guides import MOST_LEVELS
 from carp_optimized.state import encoding, room
 from carp_optimized.state.arrays import FURTHER, Search
 from carp_spec import (
@@ -116,20 +116,21 @@ def test_guides_that_do_not_all_fit_are_made_again(monkeypatch: pytest.MonkeyPat
         assert_alike(instance, planner)
 
 
-@pytest.mark.parametrize(("last", "pace"), [(1, 1), (1, 3), (2, 1), (2, 3)])
+@pytest.mark.parametrize("pace", [1, 3])
+@pytest.mark.parametrize(("each", "last"), [(1, 1), (1, 2), (MOST_LEVELS, MOST_LEVELS + 1)])
 def test_a_guide_ends_a_detour_behind_the_start_until_more_of_it_is_asked_for(
-    monkeypatch: pytest.MonkeyPatch, last: int, pace: int
+    monkeypatch: pytest.MonkeyPatch, each: int, last: int, pace: int
 ) -> None:
     """On a line, whose far end makes the durations alike or not."""
     monkeypatch.setattr(room, "DETOUR", 3)
-    cells = (*(Resource(str(k)) for k in range(19)), Resource("19", duration=last))
+    cells = (*(Resource(str(k), duration=each) for k in range(19)), Resource("19", duration=last))
     line = ResourceGraph(cells, tuple((str(k), str(k + 1)) for k in range(19)))
     fleet = PlannedFleet(Instance(line, (Robot("r", "4", "2", pace=pace), Robot("s", "17", "2", pace=pace))))
-    to_goal = [*(pace * abs(k - 2) for k in range(19)), pace * (16 + last)]
-    reached = 4 + 3 * last
-    assert fleet.ticks_to_goal(0) == 2 * pace
+    to_goal = [*(pace * each * abs(k - 2) for k in range(19)), pace * (16 * each + last)]
+    reached = 4 + 3 * last // each
+    assert fleet.ticks_to_goal(0) == 2 * pace * each
     assert fleet.state.guides.ticks[0].tolist() == [*to_goal[: reached + 1], *(FURTHER,) * (19 - reached)]
-    assert fleet.ticks_to_goal(1) == 15 * pace
+    assert fleet.ticks_to_goal(1) == 15 * pace * each
     assert potentials(fleet, 0) == [dict(enumerate(to_goal))]
 
 
@@ -147,12 +148,14 @@ def test_a_detour_longer_than_that_of_a_guide_is_found(monkeypatch: pytest.Monke
         assert_alike(Instance(replace(graph, edges=graph.edges[:-1]), robots), planner)
 
 
-@pytest.mark.parametrize(
-    "instance", [grid_instance(Grid(9, 9), Fleet(70)), TOWNS["a slow robot"].instance], ids=["levels", "durations"]
-)
+@pytest.mark.parametrize("longest", [1, 2, MOST_LEVELS + 1])
 def test_ranks_take_the_place_of_ticks_and_indices_that_do_not_fit_into_32_bits(
-    monkeypatch: pytest.MonkeyPatch, instance: Instance
+    monkeypatch: pytest.MonkeyPatch, longest: int
 ) -> None:
+    instance = grid_instance(Grid(9, 9), Fleet(70))
+    durations = cycle([1, 1, longest])
+    cells = tuple(replace(cell, duration=next(durations)) for cell in instance.graph.resources)
+    instance = replace(instance, graph=replace(instance.graph, resources=cells))
     assert PlannedFleet(instance).state.guides.rank.size == 0
     monkeypatch.setattr(encoding, "scale_of_tolls", lambda *_: 0)
     assert PlannedFleet(instance).state.guides.rank.size > 0
@@ -160,13 +163,13 @@ def test_ranks_take_the_place_of_ticks_and_indices_that_do_not_fit_into_32_bits(
         assert_alike(instance, planner)
 
 
-@pytest.mark.parametrize("last", [1, LARGEST])
-def test_a_goal_that_is_too_far_is_refused(last: int) -> None:
-    cells = (Resource("a", duration=LARGEST), Resource("b", duration=LARGEST), Resource("c", duration=last))
+@pytest.mark.parametrize(("duration", "last", "pace"), [(LARGEST, 1, 1), (LARGEST, LARGEST, 1), (1, 1, LARGEST)])
+def test_a_goal_that_is_too_far_is_refused(duration: int, last: int, pace: int) -> None:
+    cells = (Resource("a", duration=duration), Resource("b", duration=duration), Resource("c", duration=last))
     far = ResourceGraph(cells, LINE.edges)
     for planner in PLANNERS:
         with pytest.raises(Refusal, match="the reference engine has no such limit"):
-            carp_optimized.plan(Instance(far, (Robot("r", "a", "c"),)), planner)
+            carp_optimized.plan(Instance(far, (Robot("r", "a", "c", pace=pace),)), planner)
 
 
 def test_robots_whose_plans_have_ended_are_left_alone() -> None:

@@ -1,13 +1,17 @@
 """The h of A*, exact on the empty graph: from the goal along the moves backwards, one per destination.
 
-Where all durations are alike, the resources are reached level by level; otherwise by Dijkstra's algorithm. Both end a
-detour behind the start of the robot that asks: what is further from the goal lies on no plan, unless robots in the way
-cost more than the detour. A query that might have looked further than its guide has it made to its end, and asks again.
+A robot that leaves a resource has stayed there for its duration, wherever it goes. So a resource gets its ticks from
+the first one reached to which it leads. Resources are reached level by level, or where durations are long, in the order
+of a heap. Both end a detour behind the start of the robot that asks: what is further from the goal lies on no plan,
+unless robots in the way cost more than the detour. A query that might have looked further than its guide has it made to
+its end, and asks again.
 """
 
 from carp_optimized.jit.compiling import RoomExhausted, compiled
 from carp_optimized.queries.heap import push, replace_root
 from carp_optimized.state.arrays import FURTHER, LARGEST, NONE, TOO_FAR, UNREACHABLE, State
+
+MOST_LEVELS = 256  # the longest duration, where guides are made level by level
 
 
 @compiled
@@ -53,12 +57,10 @@ def reach(state: State, slot: int, destination: int, start: int, detour: int) ->
     """Make a guide as far as the start, and further by as many of the longest durations as a detour has."""
     guides = state.guides
     guides.holds[slot] = NONE
-    goal = int(guides.goal[destination])
-    step = int(guides.pace[destination]) * state.longest
-    if state.last_alike:
-        make_level_guide(state, slot, goal, step, start, detour)
+    if state.longest <= MOST_LEVELS:
+        make_level_guide(state, slot, destination, start, detour)
     else:
-        make_guide(state, slot, destination, start, detour * step)
+        make_guide(state, slot, destination, start, detour)
     guides.slot[destination] = slot
     guides.holds[slot] = destination
 
@@ -75,105 +77,119 @@ def toll_of(state: State, slot: int, resource: int) -> int:
 
 
 @compiled
-def make_level_guide(state: State, slot: int, goal: int, step: int, start: int, detour: int) -> None:
-    """Reach the resources level by level, each `step` ticks from the one before."""
-    first = state.search.keys  # by level: the number of resources before it
-    queue = state.search.nodes
+def make_level_guide(  # noqa: C901 - one loop
+    state: State, slot: int, destination: int, start: int, detour: int
+) -> None:
+    """Reach the resources level by level, where a level is the duration of all, or a tick for a robot of pace 1.
+
+    `head` has the resources of the levels to come, in a ring, each with the next one in `behind`.
+    """
+    graph = state.graph
     ticks = state.guides.ticks[slot]
-    if min(first.size, queue.size) <= ticks.size:
+    behind = state.search.nodes
+    head = state.search.ending.nodes
+    alike = 1 if state.last_alike else 0
+    widest = 1 if state.last_alike else state.longest
+    step = int(state.guides.pace[destination]) * (state.longest if state.last_alike else 1)
+    if min(behind.size, head.size) <= max(ticks.size, widest):
         raise RoomExhausted
     for resource in range(ticks.size):
         ticks[resource] = FURTHER
+    for level in range(widest + 1):
+        head[level] = NONE
+    goal = int(state.guides.goal[destination])
     ticks[goal] = 0
-    queue[0] = goal
-    first[0] = 0
-    begin = 0
-    end = 1
-    level = 1
+    behind[goal] = NONE
+    head[0] = goal
+    left = 1
+    level = 0
+    here = 0
     largest = LARGEST // step
-    last = min(largest, detour) if start == goal else largest
-    while begin < end and level <= last:
-        first[level] = end
-        begin = end
-        end = reach_sources(state, slot, int(first[level - 1]), end, level)
-        if ticks[start] == level:
-            last = min(largest, level + detour)
+    last = largest
+    while left > 0 and level <= last:
+        resource = int(head[here])
+        head[here] = NONE
+        while resource != NONE:
+            left -= 1
+            if resource == start:
+                last = min(largest, level + detour * widest)
+            for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
+                source = int(graph.source[edge])
+                if ticks[source] == FURTHER:
+                    more = alike if alike > 0 else int(graph.duration[source])
+                    left += 1
+                    if level + more <= last:
+                        ticks[source] = (level + more) * step
+                        there = here + more if here + more <= widest else here + more - widest - 1
+                        behind[source] = head[there]
+                        head[there] = source
+            resource = int(behind[resource])
         level += 1
-    turn_levels_to_ticks(state, slot, step)
-    if begin == end or last == largest:
+        here = here + 1 if here < widest else 0
+    if state.scale == 0:
+        rank_by_levels(state, slot, step, level + widest)
+    if left == 0 or level > last == largest:
         close_guide(state, slot)
 
 
 @compiled
-def reach_sources(state: State, slot: int, begin: int, end: int, level: int) -> int:
-    """Put the resources that lead to those queued from `begin` to `end` behind these; where the queue ends then."""
-    graph = state.graph
-    queue = state.search.nodes
-    ticks = state.guides.ticks[slot]
-    count = end
-    for k in range(begin, end):
-        resource = int(queue[k])
-        for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
-            source = int(graph.source[edge])
-            if ticks[source] == FURTHER:
-                ticks[source] = level
-                queue[count] = source
-                count += 1
-    return count
-
-
-@compiled
-def turn_levels_to_ticks(state: State, slot: int, step: int) -> None:
-    """Turn the levels of a guide into ticks, and rank by level and index where ranks are kept."""
-    if state.scale > 0 and step == 1:
-        return
+def rank_by_levels(state: State, slot: int, step: int, levels: int) -> None:
+    """Rank the resources, which are on so many levels, by level and index."""
     first = state.search.keys
     ticks = state.guides.ticks[slot]
     rank = state.guides.rank[slot]
+    if first.size <= levels:
+        raise RoomExhausted
+    for level in range(levels + 1):
+        first[level] = 0
     for resource in range(ticks.size):
-        level = int(ticks[resource])
-        if level >= 0:
-            ticks[resource] = level * step
-            if state.scale == 0:
-                rank[resource] = first[level]
-                first[level] += 1
+        if ticks[resource] >= 0:
+            first[int(ticks[resource]) // step + 1] += 1
+    for level in range(levels):
+        first[level + 1] += first[level]
+    for resource in range(ticks.size):
+        if ticks[resource] >= 0:
+            level = int(ticks[resource]) // step
+            rank[resource] = first[level]
+            first[level] += 1
 
 
 @compiled
 def make_guide(state: State, slot: int, destination: int, start: int, detour: int) -> None:
-    """Settle the resources in the order of (ticks to the goal, index), which is the order of their ranks."""
+    """Reach the resources in the order of (ticks to the goal, index), which is the order of their ranks."""
     graph = state.graph
     keys = state.search.keys
     nodes = state.search.nodes
     ticks = state.guides.ticks[slot]
-    rank = state.guides.rank[slot]
     pace = int(state.guides.pace[destination])
+    goal = int(state.guides.goal[destination])
     for resource in range(ticks.size):
         ticks[resource] = FURTHER
-    keys[0] = state.guides.goal[destination]
-    nodes[0] = state.guides.goal[destination]
+    ticks[goal] = 0
+    keys[0] = goal
+    nodes[0] = goal
     size = 1
-    settled = 0
+    reached = 0
     last = LARGEST
     while size > 0 and keys[0] >> 32 <= last:
-        to_goal = int(keys[0]) >> 32
         resource = int(nodes[0])
         size -= 1
         replace_root(keys, nodes, size, int(keys[size]), int(nodes[size]))
-        if ticks[resource] != FURTHER:
-            continue
-        ticks[resource] = to_goal
+        to_goal = int(ticks[resource])
         if state.scale == 0:
-            rank[resource] = settled
-        settled += 1
+            state.guides.rank[slot][resource] = reached
+        reached += 1
         if resource == start:
-            last = min(last, to_goal + detour)
+            last = min(last, to_goal + detour * pace * state.longest)
         for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
             source = int(graph.source[edge])
             further = to_goal + pace * int(graph.duration[source])
             if ticks[source] == FURTHER and further <= LARGEST:
+                ticks[source] = further
                 push(keys, nodes, size, (further << 32) + source, source)
                 size += 1
+    for k in range(size):
+        ticks[nodes[k]] = FURTHER
     if size == 0:
         close_guide(state, slot)
 
