@@ -113,6 +113,11 @@ class PlannedFleet:
         """The cost of a robot's shortest path on the empty graph; 0 if none exists."""
         return self.call(lambda: passes.shortest(self.native, robot))
 
+    @property
+    def keeps_all_guides(self) -> bool:
+        """Whether there is room for the distances to all goals at once."""
+        return self.state.guides.holds.size == self.state.guides.goal.size
+
     def require_robots(self, robots: Sequence[Robot]) -> None:
         """Raise `Refusal` unless the robots can be taken up."""
         limits.refuse_robots(robots, self.state.longest)

@@ -79,7 +79,7 @@ def instance_of_tiles(layout: Layout, robots: int, resources: int = RESOURCES) -
 
 def _row(instance: Instance) -> str:
     """The numbers of a fleet: its plans by CARP alone, where each holds its start, and within ten seconds."""
-    by_way = nearest_first(PlannedFleet(instance), lambda: True)
+    by_way = nearest_first(PlannedFleet(instance))
     row: list[object] = [len(instance.robots), len(instance.graph.resources), len(instance.graph.groups)]
     planners: tuple[Callable[[], Solution], ...] = (
         lambda: carp_optimized.plan(instance, Carp()),

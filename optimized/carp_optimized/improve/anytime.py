@@ -30,8 +30,6 @@ ENOUGH = 4
 """The annealing begins if CARP has left this many times its own time, as it takes up the plans again."""
 AGAIN = 2
 """With less, passes and settling follow if CARP has left this many times its own time."""
-SORTING = 4
-"""The shortest ways of all robots are looked up if that takes at most one of this many parts of the time."""
 
 
 def plan_within(
@@ -84,15 +82,11 @@ def _first_plans(instance: Instance, spent: Callable[[], float], seconds: float 
         return seconds is None or spent() + visit * visits < seconds
 
     fleet = PlannedFleet(instance)
-    visits = 0
-    order = nearest_first(fleet, lambda: seconds is None or SORTING * spent() < seconds)
+    order = nearest_first(fleet)
     for robot in order:
-        if not goes_on(visits):
+        if not goes_on(fleet.visits):
             break
-        plan = fleet.find(robot, None, 0)
-        if plan is not None:
-            fleet.commit([plan])
-            visits += len(plan.visits)
+        fleet.plan_again(robot)
     if len(fleet.order) < len(order) and (seconds is None or 2 * spent() < seconds):
         other = plan_holding_starts(instance, order, goes_on)
         if len(other.plans) > len(fleet.order):
@@ -100,12 +94,10 @@ def _first_plans(instance: Instance, spent: Callable[[], float], seconds: float 
     return Solution.of(instance, fleet.plans)
 
 
-def nearest_first(fleet: PlannedFleet, goes_on: Callable[[], bool]) -> list[int]:
-    """The robots by their shortest ways, or about so if there is no time to look for these."""
-    ways = []
-    for robot in range(len(fleet.instance.robots)):
-        if not goes_on():
-            about = near(crowd_of(fleet.instance)) * [each.pace for each in fleet.instance.robots]
-            return [int(each) for each in np.argsort(about, kind="stable")]
-        ways.append(fleet.ticks_to_goal(robot))
-    return sorted(range(len(ways)), key=ways.__getitem__)
+def nearest_first(fleet: PlannedFleet) -> list[int]:
+    """The robots by their shortest ways, or about so if their distances would be measured twice for it."""
+    if fleet.keeps_all_guides:
+        ways = np.array([fleet.ticks_to_goal(robot) for robot in range(len(fleet.instance.robots))])
+    else:
+        ways = near(crowd_of(fleet.instance)) * np.array([each.pace for each in fleet.instance.robots])
+    return [int(robot) for robot in np.argsort(ways, kind="stable")]

@@ -19,15 +19,11 @@ def plan_holding_starts(instance: Instance, order: Sequence[int], goes_on: Calla
     fleet = PlannedFleet(instance)
     held = _Held(instance, order)
     fleet.commit([_standing(instance, robot) for robot in held.robots])
-    visits = 0
     for robot in _standing_first(held, order):
-        if not goes_on(visits):
+        if not goes_on(fleet.visits):
             break
         fleet.withdraw(held.give_up(robot))
-        plan = fleet.find(robot, None, 0)
-        if plan is not None:
-            fleet.commit([plan])
-            visits += len(plan.visits)
+        fleet.plan_again(robot)
     fleet.withdraw([*held.robots])
     return Solution.of(instance, fleet.plans)
 
