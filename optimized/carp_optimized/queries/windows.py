@@ -36,6 +36,16 @@ def skip_below(ticks: Ints, slot: int, row_end: int, limit: int) -> int:
 
 
 @inlined
+def copy(rows: Rows, slot: int, to: int) -> None:
+    """Copy an interval."""
+    rows.start[to] = rows.start[slot]
+    rows.end[to] = rows.end[slot]
+    rows.source[to] = rows.source[slot]
+    rows.robot[to] = rows.robot[slot]
+    rows.rank[to] = rows.rank[slot]
+
+
+@inlined
 def make_room(rows: Rows, resource: int) -> None:
     """Move the row to the end of the pool if it is full."""
     count = int(rows.size[resource])
@@ -47,11 +57,7 @@ def make_room(rows: Rows, resource: int) -> None:
     if new + room > rows.start.size:
         raise RoomExhausted
     for k in range(count):
-        rows.start[new + k] = rows.start[old + k]
-        rows.end[new + k] = rows.end[old + k]
-        rows.source[new + k] = rows.source[old + k]
-        rows.robot[new + k] = rows.robot[old + k]
-        rows.rank[new + k] = rows.rank[old + k]
+        copy(rows, old + k, new + k)
     for k in range(room):
         rows.resource[new + k] = resource
     rows.offset[resource] = new
@@ -70,11 +76,7 @@ def split_window(
     make_room(windows, resource)
     slot = last_by(windows, resource, enter)
     for k in range(int(windows.offset[resource]) + int(windows.size[resource]), slot, -1):
-        windows.start[k] = windows.start[k - 1]
-        windows.end[k] = windows.end[k - 1]
-        windows.source[k] = windows.source[k - 1]
-        windows.robot[k] = windows.robot[k - 1]
-        windows.rank[k] = windows.rank[k - 1]
+        copy(windows, k - 1, k)
     windows.end[slot] = enter - gap
     windows.robot[slot] = robot
     windows.rank[slot] = rank
@@ -89,16 +91,10 @@ def join_windows(windows: Rows, resource: int, enter: int) -> None:
     slot = last_by(windows, resource, enter)
     windows.size[resource] -= 1
     last = int(windows.offset[resource]) + int(windows.size[resource])
-    windows.end[slot] = windows.end[slot + 1]
-    windows.source[slot] = windows.source[slot + 1]
-    windows.robot[slot] = windows.robot[slot + 1]
-    windows.rank[slot] = windows.rank[slot + 1]
-    for k in range(slot + 1, last):
-        windows.start[k] = windows.start[k + 1]
-        windows.end[k] = windows.end[k + 1]
-        windows.source[k] = windows.source[k + 1]
-        windows.robot[k] = windows.robot[k + 1]
-        windows.rank[k] = windows.rank[k + 1]
+    start = windows.start[slot]
+    for k in range(slot, last):
+        copy(windows, k + 1, k)
+    windows.start[slot] = start
     windows.start[last] = NEVER
     windows.end[last] = NEVER
 
@@ -307,29 +303,8 @@ def reserve(state: State, record: int) -> None:
 @compiled
 def reserve_but(state: State, record: int, head: int, tail: int) -> None:
     """Reserve the plan where its first `head` and last `tail` stays are reserved."""
-    records = state.records
-    robot = int(records.robot[record])
-    rank = int(state.rank[robot])
-    state.reserved[robot] = record
-    first = int(records.visits_at[record])
-    last = first + int(records.visits[record]) - 1
-    source = int(records.resource[first + head - 1]) if head > 0 else NONE
-    for k in range(first + head, last + 1 - tail):
-        resource = int(records.resource[k])
-        enter = int(records.enter[k])
-        leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
-        if state.graph.capacity[resource] == 1:
-            met_from = source if state.gap == 0 else NONE
-            split_window(state.windows, resource, enter, leave, state.gap, met_from, robot, rank)
-        else:
-            add_stay(state.stays, resource, enter, min(leave + state.gap, NEVER), source)
-            if state.graph.capacity[resource] == GROUPED:
-                book_groups(state, record, k, source, True)
-            else:
-                sweep_windows(state.windows, state.stays, resource, int(state.graph.capacity[resource]), state.gap)
-        source = resource
-    if state.graph.group.size > 0:
-        sweep_plan(state, record)
+    state.reserved[int(state.records.robot[record])] = record
+    book(state, record, head, tail, True)
 
 
 @compiled
@@ -341,21 +316,36 @@ def withdraw(state: State, record: int) -> None:
 @compiled
 def withdraw_but(state: State, record: int, head: int, tail: int) -> None:
     """Undo `reserve_but`."""
+    state.reserved[int(state.records.robot[record])] = NONE
+    book(state, record, head, tail, False)
+
+
+@compiled
+def book(state: State, record: int, head: int, tail: int, is_added: bool) -> None:
+    """Add or drop the stays of the plan, but for its first `head` and last `tail`."""
     records = state.records
-    state.reserved[records.robot[record]] = NONE
+    robot = int(records.robot[record])
+    rank = int(state.rank[robot])
     first = int(records.visits_at[record])
     last = first + int(records.visits[record]) - 1
     source = int(records.resource[first + head - 1]) if head > 0 else NONE
     for k in range(first + head, last + 1 - tail):
         resource = int(records.resource[k])
         enter = int(records.enter[k])
+        leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
         if state.graph.capacity[resource] == 1:
-            join_windows(state.windows, resource, enter)
+            if is_added:
+                met_from = source if state.gap == 0 else NONE
+                split_window(state.windows, resource, enter, leave, state.gap, met_from, robot, rank)
+            else:
+                join_windows(state.windows, resource, enter)
         else:
-            leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
-            drop_stay(state.stays, resource, enter, min(leave + state.gap, NEVER), source)
+            if is_added:
+                add_stay(state.stays, resource, enter, min(leave + state.gap, NEVER), source)
+            else:
+                drop_stay(state.stays, resource, enter, min(leave + state.gap, NEVER), source)
             if state.graph.capacity[resource] == GROUPED:
-                book_groups(state, record, k, source, False)
+                book_groups(state, record, k, source, is_added)
             else:
                 sweep_windows(state.windows, state.stays, resource, int(state.graph.capacity[resource]), state.gap)
         source = resource
