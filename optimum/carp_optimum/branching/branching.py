@@ -234,12 +234,11 @@ def _part_of(instance: Instance, goals: Ints, kept: npt.NDArray[np.bool_]) -> Pa
         moving = goes_on[move < graph.first[place[goes_on] + 1]]
         target = graph.target[graph.first[place[moving]] + way]
         leads[moving, way + 1] = at[robot[moving], tick[moving] + 1, target]
-    back = moves_back(instance)
     width, size, arcs = resources + moves, robot.size, robot.size * (branches + 1)
     nodes = Nodes(
         first=graph.first,
         target=graph.target,
-        back=np.array([back.get(move, NONE) for move in range(moves)], np.int32),
+        back=moves_back(instance),
         goal=goals,
         of_robot=np.searchsorted(robot, np.arange(robots + 1)).astype(np.int32),
         place=place.astype(np.int32),

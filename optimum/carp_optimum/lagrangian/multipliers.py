@@ -1,14 +1,14 @@
 """The arrays of the search for prices (`carp_optimum.lagrangian.state`), made from an instance."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from carp_optimized.jit.kinds import IntTable, LongTable
+from carp_optimized.jit.kinds import Ints, IntTable, LongTable
 from carp_optimized.state.arrays import NONE, Graph
-from carp_optimum.lagrangian.state import Charges, Courses, Market, Prices, Requests, Scratch, Usage, Ways
+from carp_optimum.lagrangian.state import Cells, Charges, Market, Prices, Requests, Scratch, Usage, Ways
 from carp_spec import Instance, Refusal
 from carp_verify.bound.rules import LARGEST_TABLE, size_fits
 
@@ -38,91 +38,75 @@ def requests_of(instance: Instance, scale: int) -> Requests:
     )
 
 
-def market_of(instance: Instance, graph: Graph, requests: Requests, longest: int) -> Market:
-    """A market without ticks."""
-    empty = np.zeros((0, 0), np.int32)
-    wide = np.zeros((0, 0), np.int64)
-    short = np.zeros((0, 0), np.int16)
-    edges = graph.target.size
+def market_of(instance: Instance, graph: Graph, requests: Requests, longest: int, horizon: int, delays: int) -> Market:
+    """A market with tables for this many ticks and delays, and no rows."""
+    robots, resources, edges = requests.start.size, graph.duration.size, graph.target.size
+    ticks = int((requests.earliest - requests.release).max(initial=0)) + delays
+    visits = ticks // int(graph.duration.min(initial=1)) + 2
+    refuse_table("$.robots", "robots times the visits of a plan", robots * visits, LARGEST_ARRAY)
+    slots = resources * (longest + 1)
     scratch = Scratch(
         generation=np.zeros(1, np.int64),
-        mark=np.zeros(0, np.int64),
-        paid=np.zeros(0, np.int64),
-        parent=np.zeros(0, np.int32),
-        following=np.zeros(0, np.int32),
+        mark=np.zeros(slots, np.int64),
+        paid=np.zeros(slots, np.int64),
+        parent=np.zeros(resources * ticks, np.int32),
+        following=np.zeros(slots, np.int32),
         head=np.full(longest + 1, NONE, np.int32),
         keys=np.zeros(edges + 1, np.int64),
         nodes=np.zeros(edges + 1, np.int32),
         steps=np.zeros(1, np.int64),
     )
-    back = moves_back(instance)
-    prices = Prices(
-        row=np.zeros(graph.room.size, np.int32),
-        entry=np.zeros(edges, np.int32),
-        back=np.array([back.get(move, NONE) for move in range(edges)], np.int32),
-        into=np.argsort(graph.target, kind="stable").astype(np.int32),
-        limit=wide,
-        exchange=wide,
-        present=wide,
-        crossing=wide,
-        stay=wide,
-        across=wide,
-        changed=np.zeros(0, np.int32),
-        waiting=wide,
-        entering=wide,
-        worth=np.zeros(1, np.int64),
-    )
-    usage = Usage(empty, empty, empty, np.zeros(graph.room.size, np.int32), np.zeros(1, np.int64))
-    courses = Courses(wide, wide, short, short, np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(2, np.int64))
-    ways = Ways(np.zeros(0, np.int32), empty, empty)
-    charges = Charges(wide, wide, empty, wide, empty)
-    is_even = bool((graph.duration == graph.duration[:1]).all())
-    return Market(
-        graph, requests, prices, charges, ways, usage, courses, scratch, 0, 1, instance.after_goal == "park", is_even
-    )
-
-
-def moves_back(instance: Instance) -> Mapping[int, int]:
-    """For each move that has a move back, the number of that."""
-    moves = [(source, target) for source in instance.graph.index for target in instance.graph.successors[source]]
-    number = {move: position for position, move in enumerate(moves)}
-    return {
-        position: number[target, source] for (source, target), position in number.items() if (target, source) in number
-    }
-
-
-def sized(market: Market, horizon: int, delays: int) -> Market:
-    """The market with tables for this many ticks and delays, and no rows."""
-    requests, graph = market.requests, market.graph
-    robots, resources = requests.start.size, graph.duration.size
-    ticks = int((requests.earliest - requests.release).max(initial=0)) + delays
-    visits = ticks // int(graph.duration.min(initial=1)) + 2
-    refuse_table("$.robots", "robots times the visits of a plan", robots * visits, LARGEST_ARRAY)
-    slots = resources * market.scratch.head.size
-    market = market._replace(
+    empty, wide = np.zeros((0, 0), np.int32), np.zeros((0, 0), np.int64)
+    met = np.zeros(graph.room.size, np.int32)
+    market = Market(
+        graph=graph,
+        requests=requests,
+        limits=no_cells(graph.room.size),
+        exchanges=no_cells(edges),
+        prices=Prices(
+            back=moves_back(instance),
+            into=np.argsort(graph.target, kind="stable").astype(np.int32),
+            present=wide,
+            crossing=wide,
+            stay=wide,
+            across=wide,
+            changed=np.zeros(0, np.int32),
+            waiting=wide,
+            entering=wide,
+            worth=np.zeros(1, np.int64),
+        ),
         charges=charges_of(np.zeros((robots, horizon), np.int32), np.zeros((1, resources), np.int64), delays),
-        ways=Ways(
-            np.zeros(robots, np.int32), np.zeros((robots, visits), np.int32), np.zeros((robots, visits), np.int32)
-        ),
-        usage=market.usage._replace(present=np.zeros((graph.room.size, horizon), np.int32)),
-        scratch=market.scratch._replace(
-            mark=np.zeros(slots, np.int64),
-            paid=np.zeros(slots, np.int64),
-            parent=np.zeros(resources * ticks, np.int32),
-            following=np.zeros(slots, np.int32),
-        ),
+        ways=Ways(np.zeros(robots, np.int32), *np.zeros((2, robots, visits), np.int32)),
+        usage=Usage(np.zeros((graph.room.size, horizon), np.int32), empty, empty, met, np.zeros(1, np.int64)),
+        scratch=scratch,
         horizon=horizon,
         delays=delays,
+        parks=instance.after_goal == "park",
+        is_even=bool((graph.duration == graph.duration[:1]).all()),
     )
     return with_room(market, 1, 1)
 
 
+def no_cells(numbers: int) -> Cells:
+    """Cells of so many constraints or moves, none of which has a row."""
+    price, course = np.zeros((2, 0, 0), np.int64)
+    listed, active = np.zeros((0, 0), np.int16), np.zeros(0, np.int64)
+    return Cells(np.zeros(numbers, np.int32), price, course, listed, active, np.zeros(1, np.int64))
+
+
+def moves_back(instance: Instance) -> Ints:
+    """For each move the number of the move back, or `NONE`."""
+    moves = [(source, target) for source in instance.graph.index for target in instance.graph.successors[source]]
+    number = {move: position for position, move in enumerate(moves)}
+    return np.array([number.get((target, source), NONE) for source, target in moves], np.int32)
+
+
 def with_rows(market: Market, constraints: Sequence[int]) -> Market:
-    """The market with rows for these constraints without one, and entries for the moves of their resources.
+    """The market with rows for these constraints without one, and for the moves of their resources.
 
     There are no more rows once the tables would be too large.
     """
-    row, entry = market.prices.row, market.prices.entry
+    row, entry = market.limits.row, market.exchanges.row
     graph = market.graph
     rows, entries = int(row.max(initial=0)) + 1, int(entry.max(initial=0)) + 1
     for constraint in constraints:
@@ -137,7 +121,7 @@ def with_rows(market: Market, constraints: Sequence[int]) -> Market:
         rows += 1
         entry[np.array(moves, np.int64)] = range(entries, entries + len(moves))
         entries += len(moves)
-    rows_there, entries_there = len(market.prices.limit), len(market.prices.exchange)
+    rows_there, entries_there = len(market.limits.price), len(market.exchanges.price)
     if rows <= rows_there and entries <= entries_there:
         return market
     most = LARGEST_PRICED // max(market.horizon, 1)
@@ -145,32 +129,34 @@ def with_rows(market: Market, constraints: Sequence[int]) -> Market:
 
 
 def with_room(market: Market, rows: int, entries: int) -> Market:
-    """The market with tables for so many rows and entries, which are no fewer than before."""
-    horizon = market.horizon
-    prices, usage, courses = market.prices, market.usage, market.courses
+    """The market with tables for so many rows of constraints and of moves, which are no fewer than before."""
+    horizon, prices, usage = market.horizon, market.prices, market.usage
+    changed = np.full(rows - prices.changed.size, horizon, np.int32)
     return market._replace(
+        limits=larger_cells(market.limits, rows, horizon),
+        exchanges=larger_cells(market.exchanges, entries, horizon),
         prices=prices._replace(
-            limit=larger(prices.limit, rows, horizon),
             present=larger(prices.present, rows, horizon),
             crossing=larger(prices.crossing, rows, horizon),
             stay=larger(prices.stay, rows, horizon + 1),
             across=larger(prices.across, rows, horizon + 1),
-            changed=np.concatenate([prices.changed, np.full(rows - prices.changed.size, horizon, np.int32)]),
+            changed=np.concatenate([prices.changed, changed]),
             waiting=larger(prices.waiting, horizon + 1, rows),
-            exchange=larger(prices.exchange, entries, horizon),
             entering=larger(prices.entering, horizon + 1, entries),
         ),
         usage=usage._replace(
             moving=larger(usage.moving, entries, horizon), staying=larger(usage.staying, rows, horizon)
         ),
-        courses=courses._replace(
-            limit=larger(courses.limit, rows, horizon),
-            listed=larger(courses.listed, rows, horizon),
-            limits=larger(courses.limits, rows * horizon),
-            exchange=larger(courses.exchange, entries, horizon),
-            listed_exchange=larger(courses.listed_exchange, entries, horizon),
-            exchanges=larger(courses.exchanges, entries * horizon),
-        ),
+    )
+
+
+def larger_cells(cells: Cells, rows: int, horizon: int) -> Cells:
+    """The cells with tables for so many rows."""
+    return cells._replace(
+        price=larger(cells.price, rows, horizon),
+        course=larger(cells.course, rows, horizon),
+        listed=larger(cells.listed, rows, horizon),
+        active=larger(cells.active, rows * horizon),
     )
 
 
@@ -183,6 +169,5 @@ def larger(table: npt.NDArray[N], *shape: int) -> npt.NDArray[N]:
 
 def charges_of(row: IntTable, fee: LongTable, delays: int) -> Charges:
     """Charges with these rows and fees, and with tables for this many delays."""
-    robots, _ = row.shape
-    costs = (robots, delays + 1)
-    return Charges(np.zeros(costs, np.int64), np.zeros(costs, np.int64), row, fee, np.zeros_like(row))
+    cost, least = np.zeros((2, len(row), delays + 1), np.int64)
+    return Charges(cost, least, row, fee, np.zeros_like(row))

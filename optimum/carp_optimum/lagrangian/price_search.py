@@ -20,7 +20,6 @@ from carp_optimum.lagrangian.multipliers import (
     market_of,
     refuse_table,
     requests_of,
-    sized,
     with_rows,
 )
 from carp_optimum.lagrangian.price_steps import (
@@ -29,12 +28,12 @@ from carp_optimum.lagrangian.price_steps import (
     PARTS,
     UNIT,
     forget_prices,
-    price_exchange,
-    price_limit,
+    set_price,
     turn_all,
     walk_all,
 )
 from carp_optimum.lagrangian.priced_paths import begin_ways, find_rests, find_ways, least_cost, see_ways
+from carp_optimum.lagrangian.state import Cells
 from carp_optimum.lagrangian.usage import count_ways
 from carp_spec import Instance, Refusal, ResourceId, RobotId
 from carp_spec.documents.bounds import DeadlinesDocument
@@ -72,12 +71,10 @@ class PriceLists(NamedTuple):
 
 
 class Point(NamedTuple):
-    """Prices of cells of constraints and of exchanges, as `Courses` numbers them, and of deadlines."""
+    """The cells of constraints and of exchanges that have a price, with it, and the prices of deadlines."""
 
-    limits: Longs
-    prices: Longs
-    exchanges: Longs
-    prices_of_exchanges: Longs
+    limits: tuple[Longs, Longs]
+    exchanges: tuple[Longs, Longs]
     fees: Longs
 
 
@@ -104,15 +101,14 @@ class PriceSearch:
         if not stay_is_searched(longest):
             message = f"the pace times the duration must be at most {LONGEST_STAY}, the limit, and is {longest}"
             raise Refusal("limit", "$.graph", stay_is_searched.id, message)
-        market = market_of(instance, graph, requests, longest)
-        native = Native(market)
-        find_rests(native)
+        find_rests(Native(market_of(instance, graph, requests, longest, 0, 1)))
         last = max(requests.earliest.tolist(), default=0)
         refuse_tick("$.graph", last)
         most = min(LARGEST_ARRAY // max(graph.room.size, 1), LARGEST_TABLE // max(robots, 1))
         self.horizon = min(max(last, 0) + longest + TICKS_BEYOND, most, LAST_TICK)
         wanted = min(max(DELAYS * longest, self.horizon + longest), LARGEST_TABLE // max(robots, 1))
-        self.market = sized(market, self.horizon, max(1, min(wanted, MOST_NODES // max(resources, 1), LARGEST - last)))
+        delays = max(1, min(wanted, MOST_NODES // max(resources, 1), LARGEST - last))
+        self.market = market_of(instance, graph, requests, longest, self.horizon, delays)
         self.native = Native(self.market)
         self.deadlines: list[Deadlines] = []
         self.fees = np.zeros(0, np.int64)
@@ -125,13 +121,12 @@ class PriceSearch:
         self.count = 0
 
     def _point(self) -> Point:
-        courses, prices = self.market.courses, self.market.prices
-        of_limits, of_exchanges = courses.size.tolist()
-        limits, exchanges = courses.limits[:of_limits], courses.exchanges[:of_exchanges]
-        limit = prices.limit[prices.row[limits // self.horizon], limits % self.horizon]
-        exchange = prices.exchange[prices.entry[exchanges // self.horizon], exchanges % self.horizon]
-        priced, priced_too = limit > 0, exchange > 0
-        return Point(limits[priced], limit[priced], exchanges[priced_too], exchange[priced_too], self.fees.copy())
+        return Point(self._priced(self.market.limits), self._priced(self.market.exchanges), self.fees.copy())
+
+    def _priced(self, cells: Cells) -> tuple[Longs, Longs]:
+        active = cells.active[: cells.size[0]]
+        price = cells.price[cells.row[active // self.horizon], active % self.horizon]
+        return active[price > 0], price[price > 0]
 
     def _bound(self, check: Callable[[], None] = lambda: None) -> int:
         """The bound that the prices prove; gives each robot a cheapest way.
@@ -156,7 +151,7 @@ class PriceSearch:
         usage, graph = self.market.usage, self.market.graph
         for group in np.flatnonzero(usage.met[graph.duration.size :]).tolist():
             usage.met[graph.member[graph.members_first[group] : graph.members_first[group + 1]]] = 1
-        self.market = with_rows(self.market, np.flatnonzero((usage.met > 0) & (self.market.prices.row == 0)).tolist())
+        self.market = with_rows(self.market, np.flatnonzero((usage.met > 0) & (self.market.limits.row == 0)).tolist())
         self.native = Native(self.market)
         usage = self.market.usage
         for counts in (usage.present, usage.moving, usage.staying, usage.met, usage.met_anew):
@@ -186,10 +181,9 @@ class PriceSearch:
         """Go back to the best prices, without a course: their bound."""
         forget_prices(self.native)
         kept = self._kept
-        for cell, price in zip(kept.limits.tolist(), kept.prices.tolist(), strict=True):
-            price_limit(self.native, cell, price)
-        for cell, price in zip(kept.exchanges.tolist(), kept.prices_of_exchanges.tolist(), strict=True):
-            price_exchange(self.native, cell, price)
+        for is_exchange, priced in ((False, kept.limits), (True, kept.exchanges)):
+            for cell, price in np.column_stack(priced).tolist():
+                set_price(self.native, is_exchange, cell, price)
         self.fees = kept.fees.copy()
         self._course_of_fees[:] = 0
         return self._bound()
@@ -386,14 +380,14 @@ class PriceSearch:
         ids = [each.id for each in graph.constraints]
         size = len(graph.resources)
         moves = [(source, target) for source in graph.index for target in graph.successors[source]]
-        point, horizon = self._point(), self.horizon
-        priced = sorted(zip(point.limits.tolist(), point.prices.tolist(), strict=True))
-        rows = [(cell // horizon, (ids[cell // horizon], cell % horizon, price)) for cell, price in priced]
-        of_exchanges = sorted(zip(point.exchanges.tolist(), point.prices_of_exchanges.tolist(), strict=True))
+        limits, exchanges = (
+            [(*divmod(cell, self.horizon), price) for cell, price in sorted(np.column_stack(priced).tolist())]
+            for priced in self._point()[:2]
+        )
         return PriceLists(
-            tuple(price for row, price in rows if row < size),
-            tuple((*moves[cell // horizon], cell % horizon, price) for cell, price in of_exchanges),
-            tuple(price for row, price in rows if row >= size),
+            tuple((ids[number], tick, price) for number, tick, price in limits if number < size),
+            tuple((*moves[number], tick, price) for number, tick, price in exchanges),
+            tuple((ids[number], tick, price) for number, tick, price in limits if number >= size),
         )
 
     @property

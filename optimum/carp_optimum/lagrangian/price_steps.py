@@ -7,13 +7,13 @@ A stay counts in the row of its resource, and in those of all its groups and of 
 took the whole step, the stay's price would change by several steps. So the rows of groups and exchanges take a smaller
 step, by `LESS`, and count for as much less in the square: the gain stays the same.
 
-Only active cells are looked at (`carp_optimum.lagrangian.state.Courses`): no price of another can change.
+Only active cells are looked at (`carp_optimum.lagrangian.state.Cells`): no price of another can change.
 """
 
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.references import Native
-from carp_optimum.lagrangian.state import Market, change_exchange, change_limit, market_at
-from carp_optimum.lagrangian.usage import list_exchange, list_limit, surplus_of_exchange
+from carp_optimum.lagrangian.state import Cells, Market, change_price, market_at
+from carp_optimum.lagrangian.usage import list_cell, surplus_of_exchange
 
 UNIT = 64  # of a course
 KEPT, PARTS = 15, 16  # of the course before
@@ -27,59 +27,44 @@ LARGEST_PRICE = 1 << 40
 def turn_all(native: Native[Market]) -> int:
     """Turn the course of all prices, and leave out cells that are active no longer: the square of the course."""
     market = market_at(native)
-    return turn_limits(market) + turn_exchanges(market)
+    return turn(market, market.limits, False) + turn(market, market.exchanges, True)
 
 
 @compiled
-def turn_limits(market: Market) -> int:
-    """Turn the course of the prices of constraints; its square."""
-    courses, graph = market.courses, market.graph
+def turn(market: Market, cells: Cells, is_exchange: bool) -> int:
+    """Turn the course of the prices of constraints or of exchanges; its square."""
+    graph = market.graph
     kept = 0
     square = 0
-    of_groups = 0
-    for k in range(int(courses.size[0])):
-        cell = int(courses.limits[k])
-        limit, tick = cell // market.horizon, cell % market.horizon
-        row = int(market.prices.row[limit])
-        price = int(market.prices.limit[row][tick])
-        surplus = int(market.usage.present[limit][tick]) - int(graph.room[limit])
-        after = turned(int(courses.limit[row][tick]), surplus, price)
-        courses.limit[row][tick] = after
-        if limit < graph.duration.size:
+    less = 0
+    for k in range(int(cells.size[0])):
+        cell = int(cells.active[k])
+        number, tick = cell // market.horizon, cell % market.horizon
+        row = int(cells.row[number])
+        price = int(cells.price[row][tick])
+        if is_exchange:
+            surplus = surplus_of_exchange(market, number, tick)
+        else:
+            surplus = int(market.usage.present[number][tick]) - int(graph.room[number])
+        after = turned(int(cells.course[row][tick]), surplus, price)
+        cells.course[row][tick] = after
+        if takes_less(market, is_exchange, number):
+            less += after * after
+        else:
             square += after * after
-        else:
-            of_groups += after * after
         if after == 0 and price == 0 and surplus <= 0:
-            courses.listed[row][tick] = 0
+            cells.listed[row][tick] = 0
         else:
-            courses.limits[kept] = cell
+            cells.active[kept] = cell
             kept += 1
-    courses.size[0] = kept
-    return square + of_groups // LESS
+    cells.size[0] = kept
+    return square + less // LESS
 
 
 @compiled
-def turn_exchanges(market: Market) -> int:
-    """Turn the course of the prices of exchanges; its square."""
-    courses = market.courses
-    kept = 0
-    square = 0
-    for k in range(int(courses.size[1])):
-        cell = int(courses.exchanges[k])
-        move, tick = cell // market.horizon, cell % market.horizon
-        entry = int(market.prices.entry[move])
-        price = int(market.prices.exchange[entry][tick])
-        surplus = surplus_of_exchange(market, move, tick)
-        after = turned(int(courses.exchange[entry][tick]), surplus, price)
-        courses.exchange[entry][tick] = after
-        square += after * after
-        if after == 0 and price == 0 and surplus <= 0:
-            courses.listed_exchange[entry][tick] = 0
-        else:
-            courses.exchanges[kept] = cell
-            kept += 1
-    courses.size[1] = kept
-    return square // LESS
+def takes_less(market: Market, is_exchange: bool, number: int) -> bool:
+    """Whether the row is that of a group or of an exchange."""
+    return is_exchange or number >= market.graph.duration.size
 
 
 @compiled
@@ -93,22 +78,21 @@ def turned(course: int, surplus: int, price: int) -> int:
 def walk_all(native: Native[Market], gain: int, square: int) -> None:
     """Change all prices along their course, of that square together with whatever else is changed, to gain so much."""
     market = market_at(native)
-    courses, prices = market.courses, market.prices
-    for k in range(int(courses.size[0])):
-        cell = int(courses.limits[k])
-        limit, tick = cell // market.horizon, cell % market.horizon
-        row = int(prices.row[limit])
-        less = 1 if limit < market.graph.duration.size else LESS
-        more = change(int(prices.limit[row][tick]), int(courses.limit[row][tick]), gain, square * less)
+    walk(market, market.limits, False, gain, square)
+    walk(market, market.exchanges, True, gain, square)
+
+
+@compiled
+def walk(market: Market, cells: Cells, is_exchange: bool, gain: int, square: int) -> None:
+    """Change the prices of constraints or of exchanges along their course."""
+    for k in range(int(cells.size[0])):
+        cell = int(cells.active[k])
+        number, tick = cell // market.horizon, cell % market.horizon
+        row = int(cells.row[number])
+        less = LESS if takes_less(market, is_exchange, number) else 1
+        more = change(int(cells.price[row][tick]), int(cells.course[row][tick]), gain, square * less)
         if more != 0:
-            change_limit(market, limit, tick, more)
-    for k in range(int(courses.size[1])):
-        cell = int(courses.exchanges[k])
-        move, tick = cell // market.horizon, cell % market.horizon
-        entry = int(prices.entry[move])
-        more = change(int(prices.exchange[entry][tick]), int(courses.exchange[entry][tick]), gain, square * LESS)
-        if more != 0:
-            change_exchange(market, move, tick, more)
+            change_price(market, is_exchange, number, tick, more)
 
 
 @compiled
@@ -121,32 +105,24 @@ def change(price: int, course: int, gain: int, square: int) -> int:
 def forget_prices(native: Native[Market]) -> None:
     """Set all prices and courses to 0."""
     market = market_at(native)
-    courses, prices = market.courses, market.prices
-    for k in range(int(courses.size[0])):
-        cell = int(courses.limits[k])
-        limit, tick = cell // market.horizon, cell % market.horizon
-        row = int(prices.row[limit])
-        courses.limit[row][tick] = 0
-        change_limit(market, limit, tick, -int(prices.limit[row][tick]))
-    for k in range(int(courses.size[1])):
-        cell = int(courses.exchanges[k])
-        move, tick = cell // market.horizon, cell % market.horizon
-        entry = int(prices.entry[move])
-        courses.exchange[entry][tick] = 0
-        change_exchange(market, move, tick, -int(prices.exchange[entry][tick]))
+    forget(market, market.limits, False)
+    forget(market, market.exchanges, True)
+
+
+@compiled
+def forget(market: Market, cells: Cells, is_exchange: bool) -> None:
+    """Set the prices and courses of constraints or of exchanges to 0."""
+    for k in range(int(cells.size[0])):
+        number, tick = int(cells.active[k]) // market.horizon, int(cells.active[k]) % market.horizon
+        row = int(cells.row[number])
+        cells.course[row][tick] = 0
+        change_price(market, is_exchange, number, tick, -int(cells.price[row][tick]))
 
 
 @entry
-def price_limit(native: Native[Market], cell: int, price: int) -> None:
-    """Set the price of a constraint's cell that had none."""
+def set_price(native: Native[Market], is_exchange: bool, cell: int, price: int) -> None:
+    """Set the price of a constraint's or an exchange's cell that had none."""
     market = market_at(native)
-    change_limit(market, cell // market.horizon, cell % market.horizon, price)
-    list_limit(market, cell // market.horizon, cell % market.horizon)
-
-
-@entry
-def price_exchange(native: Native[Market], cell: int, price: int) -> None:
-    """Set the price of an exchange's cell that had none."""
-    market = market_at(native)
-    change_exchange(market, cell // market.horizon, cell % market.horizon, price)
-    list_exchange(market, cell // market.horizon, cell % market.horizon)
+    number, tick = cell // market.horizon, cell % market.horizon
+    change_price(market, is_exchange, number, tick, price)
+    list_cell(market, market.exchanges if is_exchange else market.limits, number, tick)

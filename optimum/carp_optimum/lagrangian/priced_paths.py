@@ -252,7 +252,7 @@ def entry_price(market: Market, robot: int, move: int, tick: int, ready: int) ->
     """The price of moving at the tick, and of a stay on the way until the robot is ready to leave again."""
     target = int(market.graph.target[move])
     entering = market.prices.entering[min(tick, market.horizon)]
-    paid = int(entering[int(market.prices.entry[move])]) + further_price(market, target, tick + 1, ready)
+    paid = int(entering[int(market.exchanges.row[move])]) + further_price(market, target, tick + 1, ready)
     for later in range(tick, min(ready, market.horizon)):
         paid += fee_of(market, robot, target, later)
     return paid
@@ -344,8 +344,8 @@ def leave(market: Market, robot: int, node: int, tick: int, paid: int) -> int:
     earliest = int(market.requests.earliest[robot])
     waiting = market.prices.waiting[min(tick, market.horizon)]
     entering = market.prices.entering[min(tick, market.horizon)]
-    rows = market.prices.row
-    entries = market.prices.entry
+    rows = market.limits.row
+    entries = market.exchanges.row
     fee = market.charges.fee[int(market.charges.row[robot][tick]) if tick < market.horizon else 0]
     scratch = market.scratch
     size = graph.duration.size

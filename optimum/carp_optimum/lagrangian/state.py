@@ -30,26 +30,37 @@ class Requests(NamedTuple):
     weight: Longs
 
 
-class Prices(NamedTuple):
-    """Prices by constraint and tick, and by move (r, s) and tick for the exchange row (r, s).
+class Cells(NamedTuple):
+    """Prices by constraint and tick, or by move (r, s) and tick for the exchange row (r, s).
 
-    Tables have rows only for places where robots have met: `row` has that of each constraint and `entry` that of each
-    move, 0 for all others. Row 0 is without prices. `back[move]` is the number of the move back, or `NONE`, and the
-    moves to r are `into[backward_first[r]:...]`.
-
-    `limit` and `exchange` are the prices. `present` is the price of a resource with those of its groups, and `crossing`
-    that of all exchange rows of it. `stay[row][t]` and `across[row][t]` are the sums of these before t, up to date but
-    for ticks from `changed[row]` on. A search goes from tick to tick, so what a robot pays at a tick lies together:
-    `waiting[t]` for being in r just before t and at t, by row, `entering[t]` for moving at t, by entry, with the price
-    of the target at t. From the horizon on these are 0. `worth[0]` is the sum of all prices times their capacities.
+    Tables have rows only for places where robots have met: `row` has that of each constraint or move, 0 for all others.
+    Row 0 is without prices. `course` is the direction in which prices were changed last. A cell is the number of a
+    constraint or move by the horizon, and a tick. The first `size[0]` of `active` are active, and just these are marked
+    as `listed`: of no other cell is the price, the course or the surplus above 0.
     """
 
     row: Ints
-    entry: Ints
+    price: LongTable
+    course: LongTable
+    listed: ShortTable
+    active: Longs
+    size: Longs
+
+
+class Prices(NamedTuple):
+    """What robots pay, by the prices in `Cells`.
+
+    `back[move]` is the number of the move back, or `NONE`, and the moves to r are `into[backward_first[r]:...]`.
+
+    `present` is the price of a resource with those of its groups, and `crossing` that of all exchange rows of it.
+    `stay[row][t]` and `across[row][t]` are the sums of these before t, up to date but for ticks from `changed[row]` on.
+    A search goes from tick to tick, so what a robot pays at a tick lies together: `waiting[t]` for being in r just
+    before t and at t, by row, `entering[t]` for moving at t, by the move's row, with the price of the target at t. From
+    the horizon on these are 0. `worth[0]` is the sum of all prices times their capacities.
+    """
+
     back: Ints
     into: Ints
-    limit: LongTable
-    exchange: LongTable
     present: LongTable
     crossing: LongTable
     stay: LongTable
@@ -86,7 +97,7 @@ class Ways(NamedTuple):
 
 
 class Usage(NamedTuple):
-    """The use of the ways: robots by constraint and tick, by entry and tick, those in a row before and at a tick.
+    """The use of the ways: robots by constraint and tick, by move and tick, those in a row before and at a tick.
 
     `met` is 1 for constraints without a row where robots have met, and `met_anew[0]` if there is one.
     """
@@ -96,23 +107,6 @@ class Usage(NamedTuple):
     staying: IntTable
     met: Ints
     met_anew: Longs
-
-
-class Courses(NamedTuple):
-    """The direction in which prices were changed last, by row or entry, and by tick.
-
-    Only that of `active` cells is not 0, nor is the price or the surplus of any other greater. A cell is the number of
-    a constraint or move by the horizon, and a tick; the first `size[0]` of `limits` are active, the first `size[1]` of
-    `exchanges`, and just these are marked as `listed`.
-    """
-
-    limit: LongTable
-    exchange: LongTable
-    listed: ShortTable
-    listed_exchange: ShortTable
-    limits: Longs
-    exchanges: Longs
-    size: Longs
 
 
 class Scratch(NamedTuple):
@@ -143,11 +137,12 @@ class Market(NamedTuple):
 
     graph: Graph
     requests: Requests
+    limits: Cells
+    exchanges: Cells
     prices: Prices
     charges: Charges
     ways: Ways
     usage: Usage
-    courses: Courses
     scratch: Scratch
     horizon: int
     delays: int
@@ -167,7 +162,7 @@ def duration_of(market: Market, robot: int, resource: int) -> int:
 @compiled
 def stay_price(market: Market, resource: int, enter: int, leave: int) -> int:
     """The price of a stay in [enter, leave)."""
-    row = int(market.prices.row[resource])
+    row = int(market.limits.row[resource])
     stay = market.prices.stay[row]
     across = market.prices.across[row]
     end = min(leave, market.horizon)
@@ -180,7 +175,7 @@ def further_price(market: Market, resource: int, tick: int, leave: int) -> int:
     """The price of staying in [tick, leave) in a resource that the robot is in just before the tick, and later ones."""
     if tick >= leave:
         return 0
-    row = int(market.prices.row[resource])
+    row = int(market.limits.row[resource])
     stay = market.prices.stay[row]
     across = market.prices.across[row]
     begin = min(tick, market.horizon)
@@ -191,11 +186,11 @@ def further_price(market: Market, resource: int, tick: int, leave: int) -> int:
 @compiled
 def move_price(market: Market, move: int, tick: int) -> int:
     """The price of a move at the tick."""
-    prices = market.prices
-    back = int(prices.back[move])
+    exchanges = market.exchanges
+    back = int(market.prices.back[move])
     if tick >= market.horizon or back == NONE:
         return 0
-    return int(prices.exchange[int(prices.entry[move])][tick]) + int(prices.exchange[int(prices.entry[back])][tick])
+    return int(exchanges.price[int(exchanges.row[move])][tick]) + int(exchanges.price[int(exchanges.row[back])][tick])
 
 
 @compiled
@@ -216,15 +211,19 @@ def move_between(market: Market, source: int, target: int) -> int:
 
 
 @compiled
-def change_limit(market: Market, limit: int, tick: int, more: int) -> None:
-    """Raise the price of a constraint with a row."""
+def change_price(market: Market, is_exchange: bool, number: int, tick: int, more: int) -> None:
+    """Raise the price of a constraint with a row, or of the exchange row of a move from a resource with a row."""
+    cells = market.exchanges if is_exchange else market.limits
+    price = cells.price[int(cells.row[number])]
+    price[tick] = int(price[tick]) + more
+    if is_exchange:
+        change_exchange(market, number, tick, more)
+        return
     graph = market.graph
-    prices = market.prices.limit[int(market.prices.row[limit])]
-    prices[tick] = int(prices[tick]) + more
-    market.prices.worth[0] = int(market.prices.worth[0]) + more * int(graph.room[limit])
-    group = limit - graph.duration.size
+    market.prices.worth[0] = int(market.prices.worth[0]) + more * int(graph.room[number])
+    group = number - graph.duration.size
     if group < 0:
-        change_present(market, limit, tick, more)
+        change_present(market, number, tick, more)
     else:
         for k in range(int(graph.members_first[group]), int(graph.members_first[group + 1])):
             change_present(market, int(graph.member[k]), tick, more)
@@ -234,31 +233,30 @@ def change_limit(market: Market, limit: int, tick: int, more: int) -> None:
 def change_present(market: Market, here: int, tick: int, more: int) -> None:
     """Raise what robots in the resource pay at the tick."""
     prices = market.prices
-    row = int(prices.row[here])
+    row = int(market.limits.row[here])
     present = prices.present[row]
     present[tick] = int(present[tick]) + more
     change_waiting(market, row, tick, more)
     entering = prices.entering[tick]
     for k in range(int(market.graph.backward_first[here]), int(market.graph.backward_first[here + 1])):
-        entry = int(prices.entry[int(prices.into[k])])
-        entering[entry] = int(entering[entry]) + more
+        row = int(market.exchanges.row[int(prices.into[k])])
+        entering[row] = int(entering[row]) + more
 
 
 @compiled
 def change_exchange(market: Market, move: int, tick: int, more: int) -> None:
-    """Raise the price of the exchange row of a move from a resource with a row."""
+    """Raise what robots pay that make a move or its move back at the tick, or stay in its source."""
     prices = market.prices
     back = int(prices.back[move])
     here = int(market.graph.target[back])
-    row, entry = int(prices.row[here]), int(prices.entry[move])
-    exchange, crossing, entering = prices.exchange[entry], prices.crossing[row], prices.entering[tick]
-    exchange[tick] = int(exchange[tick]) + more
+    row = int(market.limits.row[here])
+    crossing, entering = prices.crossing[row], prices.entering[tick]
     crossing[tick] = int(crossing[tick]) + more
     prices.worth[0] = int(prices.worth[0]) + more * int(market.graph.capacity[here])
     change_waiting(market, row, tick, more)
-    entering[entry] = int(entering[entry]) + more
-    entry = int(prices.entry[back])
-    entering[entry] = int(entering[entry]) + more
+    for each in (move, back):
+        row = int(market.exchanges.row[each])
+        entering[row] = int(entering[row]) + more
 
 
 @compiled

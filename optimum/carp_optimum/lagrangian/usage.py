@@ -9,7 +9,7 @@ who leave and stay are in r just before the tick, and those who come and stay ar
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.references import Native
 from carp_optimized.state.arrays import NONE
-from carp_optimum.lagrangian.state import Market, duration_of, market_at, move_between
+from carp_optimum.lagrangian.state import Cells, Market, duration_of, market_at, move_between
 
 
 @entry
@@ -52,10 +52,10 @@ def count_stay(market: Market, limit: int, enter: int, end: int, sign: int) -> N
     for tick in range(enter, end):
         present[tick] = int(present[tick]) + sign
         if sign > 0 and present[tick] > room:
-            if market.prices.row[limit] == 0:
+            if market.limits.row[limit] == 0:
                 meet(market, limit)
             else:
-                list_limit(market, limit, tick)
+                list_cell(market, market.limits, limit, tick)
 
 
 @compiled
@@ -68,7 +68,7 @@ def meet(market: Market, limit: int) -> None:
 @compiled
 def count_waiting(market: Market, here: int, enter: int, end: int, sign: int) -> None:
     """Count a robot that is in the resource before and at each tick between the first and the end."""
-    row = int(market.prices.row[here])
+    row = int(market.limits.row[here])
     if row == 0:
         return
     staying = market.usage.staying[row]
@@ -82,17 +82,17 @@ def count_waiting(market: Market, here: int, enter: int, end: int, sign: int) ->
 @compiled
 def count_move(market: Market, move: int, here: int, tick: int, sign: int) -> None:
     """Count a move at the tick."""
-    usage, prices = market.usage, market.prices
-    back = int(prices.back[move])
+    usage = market.usage
+    back = int(market.prices.back[move])
     if back == NONE:
         return
-    moving = usage.moving[int(prices.entry[move])]
+    moving = usage.moving[int(market.exchanges.row[move])]
     moving[tick] = int(moving[tick]) + sign
     if sign > 0:
         target = int(market.graph.target[move])
         if usage.present[target][tick - 1] > 0 and usage.present[here][tick] > 0:
             for each in (here, target):
-                if prices.row[each] == 0:
+                if market.limits.row[each] == 0:
                     meet(market, each)
         look_at_exchange(market, move, tick)
         look_at_exchange(market, back, tick)
@@ -101,40 +101,28 @@ def count_move(market: Market, move: int, here: int, tick: int, sign: int) -> No
 @compiled
 def surplus_of_exchange(market: Market, move: int, tick: int) -> int:
     """How many more robots use the exchange row of a move than it has room for; the move's source has a row."""
-    prices, usage = market.prices, market.usage
-    back = int(prices.back[move])
+    usage, row = market.usage, market.exchanges.row
+    back = int(market.prices.back[move])
     here = int(market.graph.target[back])
-    moving = int(usage.moving[int(prices.entry[move])][tick]) + int(usage.moving[int(prices.entry[back])][tick])
-    return moving + int(usage.staying[int(prices.row[here])][tick]) - int(market.graph.capacity[here])
+    moving = int(usage.moving[int(row[move])][tick]) + int(usage.moving[int(row[back])][tick])
+    return moving + int(usage.staying[int(market.limits.row[here])][tick]) - int(market.graph.capacity[here])
 
 
 @compiled
 def look_at_exchange(market: Market, move: int, tick: int) -> None:
     """Make the cell of an exchange active if it has a surplus."""
     back = int(market.prices.back[move])
-    if back == NONE or market.prices.row[int(market.graph.target[back])] == 0:
+    if back == NONE or market.limits.row[int(market.graph.target[back])] == 0:
         return
     if surplus_of_exchange(market, move, tick) > 0:
-        list_exchange(market, move, tick)
+        list_cell(market, market.exchanges, move, tick)
 
 
 @compiled
-def list_limit(market: Market, limit: int, tick: int) -> None:
-    """Make the cell of a constraint active."""
-    courses = market.courses
-    listed = courses.listed[int(market.prices.row[limit])]
+def list_cell(market: Market, cells: Cells, number: int, tick: int) -> None:
+    """Make the cell of a constraint, or of an exchange, active."""
+    listed = cells.listed[int(cells.row[number])]
     if listed[tick] == 0:
         listed[tick] = 1
-        courses.limits[int(courses.size[0])] = limit * market.horizon + tick
-        courses.size[0] = int(courses.size[0]) + 1
-
-
-@compiled
-def list_exchange(market: Market, move: int, tick: int) -> None:
-    """Make the cell of an exchange active."""
-    courses = market.courses
-    listed = courses.listed_exchange[int(market.prices.entry[move])]
-    if listed[tick] == 0:
-        listed[tick] = 1
-        courses.exchanges[int(courses.size[1])] = move * market.horizon + tick
-        courses.size[1] = int(courses.size[1]) + 1
+        cells.active[int(cells.size[0])] = number * market.horizon + tick
+        cells.size[0] = int(cells.size[0]) + 1
