@@ -8,7 +8,6 @@ from carp_optimum.claims.pair_search import SightSearch
 from carp_optimum.lagrangian.deadlines import Deadlines, Member
 from carp_optimum.lagrangian.price_search import PriceSearch
 from carp_spec import Instance, Resource, ResourceGraph, Robot
-from carp_spec.documents.bounds import DeadlinesDocument
 
 
 def compile_all() -> None:
@@ -18,8 +17,7 @@ def compile_all() -> None:
     instance = Instance(graph, (Robot("r", "a", "c"), Robot("s", "c", "a"), Robot("t", "d", "a")))
     lower_bound(instance, steps=20)
     search = PriceSearch(instance, 1)
-    unproved = DeadlinesDocument(("r", "s"), (0, 0), 0, "")
-    search.add_deadlines([Deadlines([Member(0, 0, 0, ()), Member(1, 0, 1, (1,))], unproved)])
+    search.add_deadlines([Deadlines([Member(0, 0, 0, ()), Member(1, 0, 1, (1,))])])
     SightSearch(search).round(lambda: None)
     list(Branching(instance, 12, lambda: None).run())
     search.finish()

@@ -69,7 +69,8 @@ def lower_bound(
     at ticks, for which the search for an optimum has no literals. Over stops, cuts alone are searched for. Raises
     `Refusal` for numbers that are too large.
     """
-    _require(instance, seconds=seconds, steps=steps)
+    require_instance(instance)
+    require_limits(seconds=seconds, steps=steps)
     seconds = BOUND_SECONDS if seconds is None and steps is None else seconds
     if goals_stand_alone(instance):
         return _by_prices(instance, seconds, steps, on_step, clock, seen=seen)
@@ -98,64 +99,52 @@ def _by_prices(
     proved = _limit(seconds, None, PROVED_PARTS, clock)
     end = _limit(seconds, steps, PARTS, clock, lambda: WAYS_AT_END * search.longest)
     search = PriceSearch(instance, SCALE, clock)
+    search.within = lambda: end(0)
     deadlines = DeadlineSearch(search)
     sights = SightSearch(search)
 
-    def report(count: int, best: int) -> None:
-        on_step(Progress(count, -(-best // SCALE)))
+    def report() -> None:
+        on_step(Progress(search.count, -(-search.best // SCALE)))
 
     def look() -> None:
-        report(search.count, search.best)
+        report()
         rough(search.count)
 
-    def watch(count: int, best: int) -> None:
-        report(count, best)
+    def watch() -> None:
+        report()
         sights.watch(look)
 
     def prove() -> None:
         with suppress(TimeOver):
             sights.prove(lambda: proved(0))
 
-    def climb(gain: int, check: Callable[[int], None]) -> None:
-        search.climb(gain, max(ROUGH_AIM, search.best // LARGE), lambda: check(search.count), report, lambda: end(0))
+    def last_aim() -> int:
+        return max(ROUGH_AIM, search.best // LARGE)
 
     def gain_of_sights() -> int:
         return min(sights.round(look), search.best // NEXT_AIM) if seen else 0
 
-    report(0, search.best)
+    report()
     with suppress(TimeOver):
         gain = min(search.best // FIRST_AIM, max(search.best // LARGE_FIRST, LARGE_AIM))
         if seen:
             with suppress(TimeOver):
-                climb(gain, first)
+                search.climb(gain, last_aim(), lambda: first(search.count), report)
         by_sights = gain_of_sights()
         while gain > 0:
             before = search.best
             if by_sights > 0:
-                search.roam(
-                    by_sights // 4,
-                    max(ROUGH_AIM, search.best // LARGE),
-                    lambda: rough(search.count),
-                    watch,
-                    lambda: end(0),
-                )
-            climb(by_sights or gain, rough)
+                search.roam(by_sights // 4, last_aim(), lambda: rough(search.count), watch)
+            search.climb(by_sights or gain, last_aim(), lambda: rough(search.count), report)
             prove()
             fruitless = by_sights > 0 and (search.best - before) * LEAST_RISE < search.best
             by_sights = 0 if fruitless else gain_of_sights()
             gain = by_sights or min(deadlines.round(look), search.best // NEXT_AIM)
     prove()
     with suppress(TimeOver):
-        search.climb(
-            max(ROUGH_AIM, search.best // FINAL_AIM), FINE_AIM, lambda: end(search.count), report, lambda: end(0)
-        )
+        search.climb(max(ROUGH_AIM, search.best // FINAL_AIM), FINE_AIM, lambda: end(search.count), report)
     search.finish()
     return _certificate(search)
-
-
-def _require(instance: Instance, **limits: float | None) -> None:
-    require_instance(instance)
-    require_limits(**limits)
 
 
 def _limit(

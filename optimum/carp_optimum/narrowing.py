@@ -10,7 +10,7 @@ Each stage gives the work of the next one before it begins. So one who asks for 
 """
 
 from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import replace
 from functools import partial
 from typing import Protocol, TypeAlias
@@ -164,8 +164,7 @@ class _Formula:
     def run(self) -> Iterator[int]:
         """Search: see `_Search`."""
         encoding = self.priced.encoding
-        solver = Solver(encoding.formula, self.look, glucose=True)
-        try:
+        with closing(Solver(encoding.formula, self.look, glucose=True)) as solver:
             while (answer := solver.satisfiable([], CONFLICTS)) is not False:
                 if answer:
                     self.plans = [plan for plan in encoding.plans(solver.model()) if plan is not None]
@@ -173,5 +172,3 @@ class _Formula:
                     self.priced.require_less(self.least)
                 yield solver.work
             self.work = solver.work
-        finally:
-            solver.close()

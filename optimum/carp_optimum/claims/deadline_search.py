@@ -10,7 +10,6 @@ prices in place of the hitting set.
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from itertools import count
 from typing import TypeAlias
 
 import numpy as np
@@ -18,10 +17,9 @@ import numpy as np
 from carp_optimized.jit.kinds import Longs
 from carp_optimum.lagrangian.deadlines import Deadlines, Member
 from carp_optimum.lagrangian.price_search import PriceSearch
-from carp_optimum.sat.proving import refutation
-from carp_optimum.sat.solver import NANOSECONDS, Deadline, Solver, TimeOver
-from carp_spec import Instance, Refusal
-from carp_spec.documents.bounds import DeadlinesDocument
+from carp_optimum.sat.proving import short_refutation
+from carp_optimum.sat.solver import Solver
+from carp_spec import Instance
 from carp_verify.bound.cuts import formula_of_deadlines
 from carp_verify.optimum.clauses import Literal
 from carp_verify.optimum.encoding import Encoding, violated
@@ -46,7 +44,6 @@ CONFLICTS_TO_SHRINK = 900
 CONFLICTS_TO_RAISE = 300
 MARGIN = 4  # ticks by which a delay is raised above all that the robot has near the best prices
 LARGEST_GROUP = 16
-LOOKS = 400  # of a search for a refutation at its clock
 LONGEST_REFUTATION = 1_000_000  # characters
 
 Allowed: TypeAlias = Mapping[int, int]
@@ -70,7 +67,11 @@ class DeadlineSearch:
         wide = max(len(self.instance.graph.resources), self.search.market.delays)
         if len(self.instance.robots) * wide > LARGEST_ENCODING:
             return 0
-        delays = self.search.wander(STEPS, self.search.scale // 4, check)
+        ways: list[Longs] = []
+        for _ in self.search.wander(STEPS, self.search.scale // 4):
+            check()
+            ways.append(self.search.delays())
+        delays = np.stack(ways)
         if delays.max(axis=0).sum() > LARGEST_DELAYS:
             return 0
         allowed = range(int(delays.max(initial=0)) + MARGIN + 1)
@@ -101,25 +102,13 @@ class DeadlineSearch:
         if key in self.known:
             return None
         self.known.add(key)
-        requests = self.search.market.requests
-        robots = tuple(self.instance.robots[position].id for position in allowed)
-        ticks = tuple(int(requests.earliest[position]) + delay for position, delay in allowed.items())
-        looks = count()
-
-        def clock() -> int:
-            check()
-            return next(looks) * NANOSECONDS
-
-        try:
-            formula = formula_of_deadlines(self.instance, DeadlinesDocument(robots, ticks, 0, ""), LARGEST_FORMULA)
-            lines = refutation(formula, Deadline(LOOKS, clock))
-        except (TimeOver, Refusal):
-            check()
-            return None
-        if len(lines) > LONGEST_REFUTATION:
-            return None
-        members = [Member(position, tick, 0, ()) for position, tick in zip(allowed, ticks, strict=True)]
-        return Deadlines(members, DeadlinesDocument(robots, ticks, 0, lines))
+        earliest = self.search.market.requests.earliest
+        members = [Member(position, int(earliest[position]) + delay, 0, ()) for position, delay in allowed.items()]
+        document = Deadlines(members).document(self.instance)
+        lines = short_refutation(
+            lambda: formula_of_deadlines(self.instance, document, LARGEST_FORMULA), check, LONGEST_REFUTATION
+        )
+        return Deadlines(members, lines) if lines else None
 
 
 def _steps(later: Longs, allowed: Allowed) -> int:

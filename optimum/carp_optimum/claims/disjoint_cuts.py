@@ -11,15 +11,14 @@ from dataclasses import dataclass
 from itertools import count
 
 from carp_optimum.sat.core_guided import core_guided
-from carp_optimum.sat.proving import refutation
-from carp_optimum.sat.solver import NANOSECONDS, Deadline, TimeOver
-from carp_spec import Instance, Plan, Refusal, RobotId, violations_of
+from carp_optimum.sat.proving import short_refutation
+from carp_optimum.sat.solver import LOOKS, TimeOver, clock_of
+from carp_spec import Instance, Plan, RobotId, violations_of
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, CutDocument
 from carp_spec.documents.instances import digest
 from carp_verify.bound.cuts import group_of
 from carp_verify.optimum.encoding import Encoding, beat_formula
 
-LOOKS = 400  # of the search for a group's optimum at its clock
 LARGEST_GROUP = 8
 LONGEST_REFUTATION = 1_000_000  # characters
 
@@ -90,25 +89,13 @@ def _meeting(instance: Instance, groups: Sequence[Group]) -> tuple[Group, Group]
 
 def _searched(instance: Instance, robots: tuple[RobotId, ...], check: Callable[[], None]) -> Group:
     """The group with its best plans and its cut; its plans are none where it has none."""
-    looks = count()
-
-    def clock() -> int:
-        check()
-        return next(looks) * NANOSECONDS
-
     group = group_of(instance, robots)
-    best = core_guided(group, LOOKS, clock)
+    best = core_guided(group, LOOKS, clock_of(check))
     check()
     plans = () if best.solution is None else best.solution.plans
     if best.shortest is None or best.lower <= best.shortest:
         return Group(robots, plans)
-    try:
-        lines = refutation(beat_formula(group, best.lower, best.evidence).formula, Deadline(LOOKS, clock))
-    except (TimeOver, Refusal):
-        check()
-        return Group(robots, plans)
-    if len(lines) > LONGEST_REFUTATION:
-        return Group(robots, plans)
     evidence = best.evidence
-    document = CutDocument(robots, best.lower, 1, evidence.horizons, evidence.order, lines)
-    return Group(robots, plans, document)
+    lines = short_refutation(lambda: beat_formula(group, best.lower, evidence).formula, check, LONGEST_REFUTATION)
+    cut = CutDocument(robots, best.lower, 1, evidence.horizons, evidence.order, lines) if lines else None
+    return Group(robots, plans, cut)

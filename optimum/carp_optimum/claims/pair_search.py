@@ -7,19 +7,16 @@ proved; the others are dropped, and a later round finds them again where they ar
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from itertools import combinations, count
+from itertools import combinations
+from typing import TypeAlias
 
 import numpy as np
-from msgspec.structs import replace
 
-from carp_optimized.jit.kinds import IntTable, Longs, LongTable
+from carp_optimized.jit.kinds import IntTable, Longs
 from carp_optimum.claims.pair_constraints import Sides
 from carp_optimum.lagrangian.deadlines import Deadlines, Member
 from carp_optimum.lagrangian.price_search import PriceSearch
-from carp_optimum.sat.proving import refutation
-from carp_optimum.sat.solver import NANOSECONDS, Deadline, TimeOver
-from carp_spec import Refusal
-from carp_spec.documents.bounds import DeadlinesDocument
+from carp_optimum.sat.proving import short_refutation
 from carp_verify.bound.cuts import formula_of_deadlines
 from carp_verify.bound.rules import ContradictionError
 from carp_verify.optimum.rules import LARGEST_FORMULA
@@ -35,8 +32,11 @@ MOST_DOUBLINGS = 6  # of a pair's work, by searches that found no claim
 MOST_FOUND = 400  # claims in a round
 LEAST_GAIN = 100  # one part of the best bound: what a round's claims must be broken by for another round
 SLOW = 500  # one part of the best bound: claims about more ticks are searched for where a period gains less
-LOOKS = 400  # of a search for a refutation at its clock
 LONGEST_REFUTATION = 300_000  # characters
+
+
+Ways: TypeAlias = tuple[Longs, IntTable]
+"""The robots' delays after a step, and their places, by robot and tick."""
 
 
 class SightSearch:
@@ -52,7 +52,7 @@ class SightSearch:
         self.before = 0
         self.is_slow = False
         self.watched = 0
-        self.ways: list[tuple[Longs, IntTable]] = []
+        self.ways: list[Ways] = []
 
     def round(self, check: Callable[[], None]) -> int:
         """Add claims that the ways near the best prices break, and return by how much, in parts of a tick; 0 if little.
@@ -63,7 +63,11 @@ class SightSearch:
         wide = max(len(self.instance.graph.resources), search.market.delays, search.horizon)
         if len(self.instance.robots) * wide > LARGEST_ENCODING:
             return 0
-        gain = self._add(*search.wander_places(STEPS, search.scale // 4, check), check)
+        ways: list[Ways] = []
+        for _ in search.wander(STEPS, search.scale // 4):
+            check()
+            ways.append((search.delays(), search.places()))
+        gain = self._add(ways, check)
         gained = gain * search.scale // STEPS
         return gained if gained * LEAST_GAIN >= search.best else 0
 
@@ -77,20 +81,20 @@ class SightSearch:
         if self.watched > PERIOD - STEPS:
             self.ways.append((search.delays(), search.places()))
         if self.watched == PERIOD:
-            delays, at = (np.stack(each) for each in zip(*self.ways, strict=True))
-            self.ways = []
+            ways, self.ways = self.ways, []
             search.drop_idle_deadlines()
             self.is_slow = (search.best - self.before) * SLOW < search.best
             self.before = search.best
-            self._add(delays, at, check)
+            self._add(ways, check)
 
-    def _add(self, delays: LongTable, at: IntTable, check: Callable[[], None]) -> int:
+    def _add(self, ways: Sequence[Ways], check: Callable[[], None]) -> int:
         """Add claims that these ways break, those that are found fastest first: by how many ways in all.
 
         On a tree, robots whose ways are short or cannot pass each other break claims most often, and have few states.
         A pair counts as twice the work for each search since its last claim, so that every pair has its turn.
         """
         search = self.search
+        delays, at = (np.stack(each) for each in zip(*ways, strict=True))
         sides = Sides(search, at, np.minimum(delays.max(axis=0) + MARGIN, self.most), self.entries)
         known = {tuple(claim.members) for claim in search.deadlines} | self.without_proof
         work = {pair: sides.work(*pair) for pair in pairs_in(at, len(self.instance.graph.resources))}
@@ -106,7 +110,7 @@ class SightSearch:
                 weight, members = sides.claim(*pair, self.is_slow, check)
                 self.searched[pair] += 1
                 if weight > 0 and members not in known:
-                    chosen.append(self._unproved(members))
+                    chosen.append(Deadlines(members))
                     gain += weight
                     del self.searched[pair]
         finally:
@@ -119,50 +123,32 @@ class SightSearch:
         `check` may raise `TimeOver`; the claims proved until then are kept.
         """
         search = self.search
-        if all(each.document.refutation for each in search.deadlines):
+        if all(each.refutation for each in search.deadlines):
             return
         search.finish()
-        kept = [each for each in search.deadlines if each.document.refutation]
-        unproved = [
-            (fee, number)
-            for number, fee in enumerate(search.fees.tolist())
-            if fee > 0 and not search.deadlines[number].document.refutation
-        ]
+        kept = [number for number, each in enumerate(search.deadlines) if each.refutation]
+        priced = {number: fee for number, fee in enumerate(search.fees.tolist()) if fee > 0 and number not in kept}
         try:
-            for _, number in sorted(unproved, key=lambda each: (-each[0], each[1])):
-                claim = search.deadlines[number]
-                lines = self._refutation(claim.document, check)
-                if lines:
-                    search.deadlines[number] = Deadlines(claim.members, replace(claim.document, refutation=lines))
-                    kept.append(search.deadlines[number])
+            for number in sorted(priced, key=lambda each: -priced[each]):
+                members = search.deadlines[number].members
+                search.deadlines[number] = Deadlines(members, self._refutation(search.deadlines[number], check))
+                if search.deadlines[number].refutation:
+                    kept.append(number)
                 else:
-                    self.without_proof.add(claim.members)
+                    self.without_proof.add(members)
         finally:
             search.keep_deadlines(kept)
 
-    def _unproved(self, members: Sequence[Member]) -> Deadlines:
-        """The claim without its proof."""
-        graph = self.instance.graph
-        robots = tuple(self.instance.robots[member.robot].id for member in members)
-        seen = tuple((member.seen, tuple(graph.resources[at].id for at in member.places)) for member in members)
-        ticks = tuple(max(member.arrival, 0) for member in members)
-        return Deadlines(members, DeadlinesDocument(robots, ticks, 0, "", seen))
-
-    def _refutation(self, claim: DeadlinesDocument, check: Callable[[], None]) -> str:
+    def _refutation(self, claim: Deadlines, check: Callable[[], None]) -> str:
         """The refutation of the claim's contrary, or nothing if it is too long."""
-        looks = count()
-
-        def clock() -> int:
-            check()
-            return next(looks) * NANOSECONDS
-
+        document = claim.document(self.instance)
         try:
-            formula = formula_of_deadlines(self.instance, claim, LARGEST_FORMULA)
-            lines = refutation(formula, Deadline(LOOKS, clock))
-        except (TimeOver, Refusal, ContradictionError):
+            return short_refutation(
+                lambda: formula_of_deadlines(self.instance, document, LARGEST_FORMULA), check, LONGEST_REFUTATION
+            )
+        except ContradictionError:
             check()
             return ""
-        return lines if len(lines) <= LONGEST_REFUTATION else ""
 
 
 def pairs_in(at: IntTable, resources: int) -> set[tuple[int, int]]:

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from carp_optimized.jit.kinds import Longs
+from carp_spec import Instance
 from carp_spec.documents.bounds import DeadlinesDocument
 
 
@@ -15,7 +16,7 @@ class Member(NamedTuple):
     """A robot, by position, of a group with deadlines.
 
     It keeps its own if it enters its goal for the last time by tick `arrival`, or if at tick `seen` it is in one
-    of the places, on its way.
+    of the places, on its way. It is not seen if that is 0.
     """
 
     robot: int
@@ -26,10 +27,18 @@ class Member(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Deadlines:
-    """Deadlines that their members cannot all keep, and the certificate of that, without price."""
+    """Deadlines that their members cannot all keep, and the refutation of the contrary; none if it is not proved."""
 
     members: Sequence[Member]
-    document: DeadlinesDocument
+    refutation: str = ""
+
+    def document(self, instance: Instance, price: int = 0) -> DeadlinesDocument:
+        """The deadlines as a certificate has them."""
+        resources = instance.graph.resources
+        robots = tuple(instance.robots[each.robot].id for each in self.members)
+        ticks = tuple(max(each.arrival, 0) for each in self.members)
+        seen = tuple((each.seen, tuple(resources[at].id for at in each.places)) for each in self.members if each.seen)
+        return DeadlinesDocument(robots, ticks, price, self.refutation, seen)
 
 
 class Flat(NamedTuple):
@@ -61,15 +70,8 @@ def flattened(deadlines: Sequence[Deadlines], resources: int) -> tuple[Flat, Map
         if member.places:
             row = rows.setdefault((member.robot, member.seen), len(rows) + 1)
             places += [(place, row, number) for place in member.places]
-    flat = Flat(
-        sizes=np.array([len(each.members) for each in deadlines], np.int64),
-        group=np.array([number for number, _ in members], np.int64),
-        robot=np.array([member.robot for _, member in members], np.int64),
-        arrival=np.array([member.arrival for _, member in members], np.int64),
-        seen=np.array([member.seen for _, member in members], np.int64),
-        inside=inside,
-        place=np.array([place for place, _, _ in places], np.int64),
-        row=np.array([row for _, row, _ in places], np.int64),
-        group_of_place=np.array([number for _, _, number in places], np.int64),
-    )
-    return flat, rows
+    columns = [(number, member.robot, member.arrival, member.seen) for number, member in members]
+    group, robot, arrival, seen = np.array(columns, np.int64).reshape(-1, 4).T
+    place, row_of_place, group_of_place = np.array(places, np.int64).reshape(-1, 3).T
+    sizes = np.array([len(each.members) for each in deadlines], np.int64)
+    return Flat(sizes, group, robot, arrival, seen, inside, place, row_of_place, group_of_place), rows

@@ -1,14 +1,13 @@
 """The search for good prices: the work between the compiled steps of `carp_optimum.lagrangian.price_steps`."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from time import monotonic_ns
 from typing import NamedTuple
 
 import numpy as np
-from msgspec.structs import replace
 
-from carp_optimized.jit.kinds import IntTable, Longs, LongTable
+from carp_optimized.jit.kinds import IntTable, Longs
 from carp_optimized.jit.references import Native
 from carp_optimized.state.arrays import LARGEST, NONE
 from carp_optimized.state.encoding import encode_graph
@@ -81,12 +80,14 @@ class Point(NamedTuple):
 class PriceSearch:
     """Prices of an instance; `best` is the best bound found with them, in parts of a tick, `shortest` that without.
 
-    Deadlines say that one of their members does not keep its own; `fees` are their prices.
+    Deadlines say that one of their members does not keep its own; `fees` are their prices. `within` is called during
+    each step of `climb` and `roam`, and may raise `TimeOver`.
     """
 
     def __init__(self, instance: Instance, scale: int, clock: Callable[[], int] = monotonic_ns) -> None:
         """`clock` gives nanoseconds, of which `longest` is what all ways together have taken at most."""
         self._clock = clock
+        self.within: Callable[[], None] = lambda: None
         self.longest = 0
         refuse_what_is_too_large(instance)
         robots, resources = len(instance.robots), len(instance.graph.resources)
@@ -190,7 +191,34 @@ class PriceSearch:
 
     def add_deadlines(self, deadlines: Sequence[Deadlines]) -> None:
         """Add deadlines with prices of 0."""
-        self.deadlines.extend(deadlines)
+        none = np.zeros(len(deadlines), np.int64)
+        self._set_deadlines(
+            [*self.deadlines, *deadlines], *(np.concatenate([each, none]) for each in self._of_deadlines())
+        )
+
+    def keep_deadlines(self, numbers: Sequence[int]) -> None:
+        """Keep the deadlines with these numbers alone, with their prices; the best bound is then what they prove."""
+        self._select(numbers)
+        self.best = self._restore()
+
+    def drop_idle_deadlines(self) -> None:
+        """Drop the deadlines without proof that have no price, neither now nor among the best prices."""
+        is_proved = np.array([each.refutation != "" for each in self.deadlines], np.bool_)
+        self._select(np.flatnonzero(is_proved | (self.fees > 0) | (self._kept.fees > 0)).tolist())
+
+    def _select(self, numbers: Sequence[int]) -> None:
+        places = np.array(numbers, np.int64)
+        self._set_deadlines(
+            [self.deadlines[each] for each in numbers], *(each[places] for each in self._of_deadlines())
+        )
+
+    def _of_deadlines(self) -> tuple[Longs, Longs, Longs]:
+        return self.fees, self._course_of_fees, self._kept.fees
+
+    def _set_deadlines(self, deadlines: Sequence[Deadlines], fees: Longs, course: Longs, best: Longs) -> None:
+        """Let there be these deadlines, with their prices, courses and best prices."""
+        self.deadlines, self.fees, self._course_of_fees = [*deadlines], fees, course
+        self._kept = self._kept._replace(fees=best)
         robots, resources = len(self.instance.robots), len(self.instance.graph.resources)
         self._flat, rows = flattened(self.deadlines, resources)
         row = np.zeros((robots, self.horizon), np.int32)
@@ -200,43 +228,11 @@ class PriceSearch:
         self.market = self.market._replace(charges=charges_of(row, fee, self.market.delays))
         self.native = Native(self.market)
         self._is_charged = False
-        none = np.zeros(len(deadlines), np.int64)
-        self.fees = np.concatenate([self.fees, none])
-        self._course_of_fees = np.concatenate([self._course_of_fees, none])
-        self._kept = self._kept._replace(fees=np.concatenate([self._kept.fees, none]))
-
-    def keep_deadlines(self, kept: Sequence[Deadlines]) -> None:
-        """Keep these deadlines alone, with their prices; the best bound is then the one that they prove."""
-        numbers = {id(each): number for number, each in enumerate(self.deadlines)}
-        self._select([numbers[id(each)] for each in kept])
-        self.best = self._restore()
-
-    def drop_idle_deadlines(self) -> None:
-        """Drop the deadlines without proof that have no price, neither now nor among the best prices."""
-        self._select(
-            [
-                number
-                for number, each in enumerate(self.deadlines)
-                if each.document.refutation or self.fees[number] > 0 or self._kept.fees[number] > 0
-            ]
-        )
-
-    def _select(self, numbers: Sequence[int]) -> None:
-        """Keep the deadlines with these numbers alone, with their prices and courses."""
-        kept = [self.deadlines[number] for number in numbers]
-        places = np.array(numbers, np.int64)
-        fees, course, best = self.fees[places], self._course_of_fees[places], self._kept.fees[places]
-        none = self.fees[:0]
-        self.deadlines, self.fees, self._course_of_fees = [], none, none
-        self._kept = self._kept._replace(fees=none)
-        self.add_deadlines(kept)
-        self.fees, self._course_of_fees = fees, course
-        self._kept = self._kept._replace(fees=best)
 
     def priced_deadlines(self) -> tuple[DeadlinesDocument, ...]:
         """The deadlines that have a price, with it."""
         priced = zip(self.deadlines, self.fees.tolist(), strict=True)
-        return tuple(replace(each.document, price=fee) for each, fee in priced if fee > 0)
+        return tuple(each.document(self.instance, fee) for each, fee in priced if fee > 0)
 
     def _kept_by(self) -> Longs:
         """How many members of each deadlines keep their own in the robots' cheapest ways."""
@@ -259,8 +255,9 @@ class PriceSearch:
         last = np.maximum(ways.length - 1, 0)
         return np.where(ways.length > 0, ways.enter[np.arange(len(last)), last] - self.market.requests.release, 0)
 
-    def _step(self, gain: int) -> bool:
-        """Change prices to gain so much; false if there is nothing to be gained."""
+    def _step(self, aim: int, bound: int) -> bool:
+        """Change prices that prove this bound to be so much above the best; false if there is nothing to be gained."""
+        gain = min(max(self.best + aim - bound, 0), LARGEST_GAIN)
         surplus = self._kept_by() - self._flat.sizes + 1
         self._course_of_fees = self._course_of_fees * KEPT // PARTS + UNIT * surplus
         self._course_of_fees[(self._course_of_fees < 0) & (self.fees == 0)] = 0
@@ -272,18 +269,18 @@ class PriceSearch:
         self.count += 1
         return True
 
-    def climb(
-        self,
-        first_aim: int,
-        last_aim: int,
-        check: Callable[[], None],
-        on_step: Callable[[int, int], None],
-        within: Callable[[], None] = lambda: None,
-    ) -> None:
+    def _new_bound(self) -> int:
+        """The bound after a step; if it is the best, its prices are kept."""
+        bound = self._bound(self.within)
+        if bound > self.best:
+            self.best = bound
+            self._kept = self._point()
+        return bound
+
+    def climb(self, first_aim: int, last_aim: int, check: Callable[[], None], on_step: Callable[[], None]) -> None:
         """Take steps that aim closer and closer to the best bound, from the first aim to the last, in parts of a tick.
 
-        `check` is called before each, `within` during each, and both may raise `TimeOver`; `on_step` gets the steps and
-        the best bound.
+        `check` is called before each, and may raise `TimeOver`, and `on_step` after it.
         """
         check()
         bound = self._restore()
@@ -293,13 +290,10 @@ class PriceSearch:
         before = self.best
         while aim >= last_aim:
             check()
-            if not self._step(min(max(self.best + aim - bound, 0), LARGEST_GAIN)):
+            if not self._step(aim, bound):
                 break
-            bound = self._bound(within)
+            bound = self._new_bound()
             failures += 1
-            if bound > self.best:
-                self.best = bound
-                self._kept = self._point()
             if self.best - before > max(aim // ENOUGH, self.best // LEAST_ENOUGH):
                 failures = 0
                 before = self.best
@@ -310,16 +304,9 @@ class PriceSearch:
                 before = self.best
                 aim = min(aim, max(aim // OVERSHOT, self.best // LEAST_PARTS)) if overshot else aim * 3 // 4
                 bound = self._restore()
-            on_step(self.count, self.best)
+            on_step()
 
-    def roam(
-        self,
-        first_aim: int,
-        last_aim: int,
-        check: Callable[[], None],
-        on_step: Callable[[int, int], None],
-        within: Callable[[], None] = lambda: None,
-    ) -> None:
+    def roam(self, first_aim: int, last_aim: int, check: Callable[[], None], on_step: Callable[[], None]) -> None:
         """Take steps as `climb` does, but never back to the best prices, while `on_step` may add deadlines.
 
         New deadlines would lose the prices that they have gained since. In each span of `SPAN` steps an aim above a
@@ -333,41 +320,23 @@ class PriceSearch:
             before = self.best
             for left in range(SPAN, 0, -1):
                 check()
-                near = max(aim * left * left // (SPAN * SPAN), min(aim, self.scale))
-                if not self._step(min(max(self.best + near - bound, 0), LARGEST_GAIN)):
+                if not self._step(max(aim * left * left // (SPAN * SPAN), min(aim, self.scale)), bound):
                     return
-                bound = self._bound(within)
-                if bound > self.best:
-                    self.best = bound
-                    self._kept = self._point()
-                on_step(self.count, self.best)
+                bound = self._new_bound()
+                on_step()
             aim = aim * 2 if (self.best - before) * ENOUGH_OF_SPAN > aim else aim // 2
 
     def finish(self) -> None:
         """Go back to the best prices."""
         self._restore()
 
-    def wander(self, steps: int, aim: int, on_step: Callable[[], None]) -> LongTable:
-        """Take this many steps near the best prices: the robots' delays, by step and robot."""
+    def wander(self, steps: int, aim: int) -> Iterator[None]:
+        """Take this many steps near the best prices, one by one."""
         bound = self._restore()
-        delays = np.zeros((steps, len(self.instance.robots)), np.int64)
-        for number in range(steps):
-            self._step(min(max(self.best + aim - bound, 0), LARGEST_GAIN))
+        for _ in range(steps):
+            self._step(aim, bound)
             bound = self._bound()
-            delays[number] = self.delays()
-            on_step()
-        return delays
-
-    def wander_places(self, steps: int, aim: int, on_step: Callable[[], None]) -> tuple[LongTable, IntTable]:
-        """As `wander`, with the places of all robots, by step, robot and tick."""
-        places: list[IntTable] = []
-
-        def look() -> None:
-            on_step()
-            places.append(self.places())
-
-        delays = self.wander(steps, aim, look)
-        return delays, np.stack(places)
+            yield
 
     def places(self) -> IntTable:
         """Where the cheapest ways have the robots, by robot and tick."""

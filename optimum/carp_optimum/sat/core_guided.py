@@ -22,6 +22,7 @@ The answer is not proved: it rests on this module and on the solver. `carp_optim
 
 from collections import Counter
 from collections.abc import Callable, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from time import monotonic_ns
 from typing import TYPE_CHECKING
@@ -92,11 +93,8 @@ def core_guided(
     except TimeOver:
         return Optimum(None, None, 0, decided=False, solution=None, evidence=Evidence((), ()))
     is_known = goals_stand_alone(instance) and not instance.graph.groups
-    search = CoreGuided(encoding, deadline, start_beside if is_known else None)
-    try:
+    with closing(CoreGuided(encoding, deadline, start_beside if is_known else None)) as search:
         return search.run()
-    finally:
-        search.close()
 
 
 class CoreGuided:

@@ -9,6 +9,7 @@ the law judges the plans.
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
 from itertools import count
 from random import Random
 
@@ -42,7 +43,7 @@ def improved(
     work = 0
     for margin in count(MARGIN):
         search = _GroupSearch(instance, plans, margin, look)
-        try:
+        with closing(search.solver):
             clauses = len(search.encoding.formula.clauses)
             work += clauses * WORK_TO_MAKE
             for size in SIZES:
@@ -53,8 +54,6 @@ def improved(
                     work += clauses * WORK_TO_TRY
                     yield work + search.solver.work, plans
             work += search.solver.work
-        finally:
-            search.solver.close()
         if not search.delays:
             return
 

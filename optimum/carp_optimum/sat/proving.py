@@ -1,6 +1,7 @@
 """Writes proof directories, which `carp_verify.optimum.proof` describes and checks."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
 from hashlib import sha256
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import msgspec
 
 from carp_optimum.sat.core_guided import Optimum
 from carp_optimum.sat.lrat_hints import NoHintsError, refutation_with_hints
-from carp_optimum.sat.solver import Deadline, Solver
+from carp_optimum.sat.solver import LOOKS, Deadline, Solver, TimeOver, clock_of
 from carp_spec import Instance, Refusal
 from carp_spec.documents.instances import write_instance
 from carp_spec.inputs.options import require_limits
@@ -58,13 +59,10 @@ def _manifest_of(best: Optimum, digests: Mapping[str, str]) -> Manifest | Unsolv
 
 
 def _model(formula: Formula, deadline: Deadline) -> Sequence[bool]:
-    solver = Solver(formula, deadline.check)
-    try:
+    with closing(Solver(formula, deadline.check)) as solver:
         if not solver.satisfiable([]):
             raise ContradictionError("the search has found an optimum whose formula has no model")
         return solver.model()
-    finally:
-        solver.close()
 
 
 def refutation(formula: Formula, deadline: Deadline) -> str:
@@ -74,18 +72,29 @@ def refutation(formula: Formula, deadline: Deadline) -> str:
     """
     if () in formula.clauses:
         return refutation_with_hints(formula.clauses, (), deadline.check)
-    solver = Solver(formula, deadline.check, with_proof=True)
-    try:
+    with closing(Solver(formula, deadline.check, with_proof=True)) as solver:
         if solver.satisfiable([]):
             raise ContradictionError(
                 "the search has found that no plans cost less, and the formula of such plans has a model"
             )
-        return refutation_with_hints(formula.clauses, solver.proof(), deadline.check)
-    except NoHintsError as error:
-        message = f"the solver's refutation has a step that no hints can justify: {error}"
-        raise Refusal("request", "$.proof", is_provable.id, message) from error
-    finally:
-        solver.close()
+        try:
+            return refutation_with_hints(formula.clauses, solver.proof(), deadline.check)
+        except NoHintsError as error:
+            message = f"the solver's refutation has a step that no hints can justify: {error}"
+            raise Refusal("request", "$.proof", is_provable.id, message) from error
+
+
+def short_refutation(make: Callable[[], Formula], check: Callable[[], None], longest: int) -> str:
+    """A refutation of the formula made, of at most so many characters; nothing if it is not soon found, or too large.
+
+    `check` is called now and then, and may raise `TimeOver`.
+    """
+    try:
+        lines = refutation(make(), Deadline(LOOKS, clock_of(check)))
+    except (TimeOver, Refusal):
+        check()
+        return ""
+    return lines if len(lines) <= longest else ""
 
 
 def _model_text(model: Sequence[bool]) -> str:

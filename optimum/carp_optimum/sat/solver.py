@@ -4,6 +4,7 @@ Glucose is faster where a formula grows and is asked again and again; CaDiCaL wr
 """
 
 from collections.abc import Callable, Sequence
+from itertools import count
 from time import monotonic_ns
 
 from carp_verify.optimum.clauses import Formula, Literal
@@ -42,6 +43,21 @@ class Deadline:
     def part(self, of: int) -> "Deadline":
         """A deadline after one of a number of equal parts of the same time, from now."""
         return Deadline((self._end - self._start) / NANOSECONDS / of, self._clock)
+
+
+LOOKS = 400
+"""The seconds after which a search is given up that goes by `clock_of`."""
+
+
+def clock_of(check: Callable[[], None]) -> Callable[[], int]:
+    """A clock that goes a second with each look at it, so the same on every machine; `check` is called at each."""
+    looks = count()
+
+    def clock() -> int:
+        check()
+        return next(looks) * NANOSECONDS
+
+    return clock
 
 
 class Solver:
