@@ -36,16 +36,16 @@ Claim: TypeAlias = tuple[int, Sequence[Member]]
 NOTHING: Claim = 0, ()
 
 
-def meeting_of(first: Side, second: Side) -> Meeting:
+def meeting_of(one: Side, other: Side) -> Meeting:
     """Room for the search of two robots."""
-    rows, columns = first.first.size, second.first.size
-    pairs = int(first.first[-1]) * int(second.first[-1])
+    rows, columns = one.inside.size, other.inside.size
+    pairs = one.place.size * other.place.size
     return Meeting(
-        pairs=np.zeros(pairs, np.int32),
-        later=np.zeros(pairs, np.int32),
+        one=one,
+        other=other,
+        pairs=np.zeros((2, pairs), np.int32),
+        origin=np.zeros((2, pairs), np.int32),
         mark=np.zeros(pairs, np.int32),
-        origin=np.zeros(pairs, np.int32),
-        later_origin=np.zeros(pairs, np.int32),
         blamed=np.zeros(rows + columns, np.int32),
         together=np.zeros((rows, columns), np.int32),
         flow=np.zeros((rows, columns), np.int32),
@@ -72,19 +72,18 @@ def fewest(sights: list[Sight], is_enough: Callable[[list[Sight]], bool]) -> lis
 def member_of(side: Side, spots: npt.NDArray[np.bool_], tick: int) -> Member:
     """The robot, seen at the tick in the spots."""
     places = tuple(side.resource[np.flatnonzero(spots[:-1])].tolist())
-    return Member(int(side.robot[0]), tick if spots[-1] else -1, tick, places)
+    return Member(side.robot, tick if spots[-1] else -1, tick, places)
 
 
 class Pair:
     """Two robots, whose joint states before the end are searched, and the ways that they took in some steps."""
 
     def __init__(self, search: PriceSearch, sides: tuple[Side, Side], end: int, steps: int) -> None:
-        self.market = search.market
         self.sides = sides
         self.end = end
         self.steps = steps
         self.meeting = meeting_of(*sides)
-        self.natives = search.native, Native(sides[0]), Native(sides[1]), Native(self.meeting)
+        self.natives = search.native, Native(self.meeting)
 
     def at_one_tick(self) -> Claim:
         """The heaviest claim about one tick."""
@@ -156,27 +155,18 @@ class Pair:
         find_meetings(*self.natives, 0, NONE)
         first, second = self.sides
         tick = int(self.meeting.found[1])
-        together = self.meeting.together[: first.first.size - 3, : second.first.size - 3] > 0
+        together = self.meeting.together[:-1, :-1] > 0
         chosen = first.chosen[1 : 1 + first.chosen[0]]
-        others = ~together[chosen].any(axis=0) & self.within(second, tick)
+        others = ~together[chosen].any(axis=0) & (tick <= second.latest)
         others &= together.any(axis=0) | np.isin(np.arange(len(others)), second.chosen[1 : 1 + second.chosen[0]])
-        ones = ~together[:, others].any(axis=1) & self.within(first, tick)
+        ones = ~together[:, others].any(axis=1) & (tick <= first.latest)
         ones &= together.any(axis=1) | np.isin(np.arange(len(ones)), chosen)
         return member_of(first, ones, tick), member_of(second, others, tick)
 
     def earlier_member(self, whose: int, tick: int) -> Member:
         """The robot where it is held at the tick, without places from which it comes too late for the last tick."""
         side = self.sides[whose]
-        return member_of(side, (side.held[tick, :-1] == 1) & self.within(side, tick), tick)
-
-    def within(self, side: Side, tick: int) -> npt.NDArray[np.bool_]:
-        """Whether all ways of the robot that are in a spot at the tick have a delay that is looked at."""
-        requests = self.market.requests
-        robot = int(side.robot[0])
-        duration = self.market.graph.duration[side.resource].astype(np.int64) * int(requests.pace[robot])
-        late = tick - int(requests.earliest[robot])
-        within = late + duration + requests.rest[robot][side.resource] <= side.delay[0]
-        return np.append(within, late <= side.delay[0])
+        return member_of(side, (side.held[tick, :-1] == 1) & (tick <= side.latest), tick)
 
 
 def first_entries(graph: Graph, durations: Longs, start: int, release: int) -> Longs:
@@ -210,7 +200,7 @@ class Sides:
         first, second = self.side(one), self.side(other)
         if first is None or second is None:
             return 0
-        return int(first.first[-1]) * int(second.first[-1]) * self.end(one, other)
+        return first.place.size * second.place.size * self.end(one, other)
 
     def end(self, one: int, other: int) -> int:
         """The tick before which a claim of two robots is searched for."""
@@ -241,45 +231,46 @@ class Sides:
         start, goal = int(requests.start[robot]), int(requests.goal[robot])
         if start == goal or requests.rest[robot][start] == NONE:
             return None
+        release, rest, most = int(requests.release[robot]), requests.rest[robot], int(self.delays[robot])
+        latest = int(requests.earliest[robot]) + most
         durations = graph.duration.astype(np.int64) * int(requests.pace[robot])
         if robot not in self.entries:
-            self.entries[robot] = first_entries(market.graph, durations, start, int(requests.release[robot]))
-        near = self.entries[robot]
-        delay = np.where(requests.rest[robot] == NONE, 1 << 30, near + durations + requests.rest[robot])
-        resource = np.flatnonzero(delay - int(requests.earliest[robot]) <= self.delays[robot]).astype(np.int32)
-        if len(resource) > MOST_SPOTS or durations[resource].sum() > MOST_SPOTS or start not in resource:
+            self.entries[robot] = first_entries(graph, durations, start, release)
+        arrival = np.where(rest == NONE, 1 << 30, self.entries[robot] + durations + rest)
+        resource = np.flatnonzero(arrival <= latest).astype(np.int32)
+        spots = len(resource)
+        if spots > MOST_SPOTS or durations[resource].sum() > MOST_SPOTS or start not in resource:
             return None
         spot = np.full(len(durations), NONE, np.int32)
-        spot[resource] = np.arange(len(resource))
+        spot[resource] = np.arange(spots)
         lengths = [*durations[resource].tolist(), 1 if market.parks else int(durations[goal]), 1, 1]
         first = np.cumsum([0, *lengths]).astype(np.int32)
-        spots = len(resource)
+        states, horizon = int(first[-1]), self.search.horizon
         number = np.append(spot, [spots, NONE]).astype(np.int32)  # at the goal at the end, or nowhere
-        often = np.zeros((self.search.horizon, spots + 2), np.int32)
+        often = np.zeros((horizon, spots + 2), np.int32)
         places = number[self.at[:, robot, :]]
-        ticks = np.broadcast_to(np.arange(self.search.horizon), places.shape)
+        ticks = np.broadcast_to(np.arange(horizon), places.shape)
         np.add.at(often, (ticks.ravel(), places.ravel()), 1)
-        side = Side(
-            robot=np.array([robot], np.int64),
-            delay=np.array([self.delays[robot]], np.int64),
+        latest_at = np.append(latest - durations[resource] - rest[resource], latest)
+        often[:, :-1][np.arange(horizon)[:, None] > latest_at] = 0
+        return Side(
+            robot=robot,
+            delay=most,
+            start=int(first[spots + 2]) if release > 0 else int(first[spot[start] + 1]) - 1,
             spot=spot,
             resource=resource,
             first=first,
-            often=often[:, : spots + 1].copy(),
-            spot_of=np.zeros(first[-1], np.int32),
-            place=np.zeros(first[-1], np.int32),
-            branches=np.zeros(first[-1], np.int32),
-            following=np.zeros((first[-1], int(np.diff(graph.first).max(initial=0)) + 2), np.int32),
-            sees=np.zeros(self.search.horizon + 1, np.int32),
-            held=np.ones((self.search.horizon + 1, spots + 2), np.int32),
-            used=np.zeros(spots + 4, np.int32),
-            left=np.zeros(spots + 4, np.int32),
-            before=np.zeros(spots + 4, np.int32),
-            chosen=np.zeros(spots + 4, np.int32),
-            inside=np.zeros(spots + 4, np.int32),
+            latest=latest_at,
+            often=often[:, :-1].copy(),
+            spot_of=np.repeat([*range(spots + 1), spots, spots + 1], lengths).astype(np.int32),
+            place=np.repeat([*resource, goal, NONE, NONE], lengths).astype(np.int32),
+            branches=np.zeros(states, np.int32),
+            following=np.zeros((states, int(np.diff(graph.first).max(initial=0)) + 2), np.int32),
+            sees=np.zeros(horizon + 1, np.int32),
+            held=np.ones((horizon + 1, spots + 2), np.int32),
+            used=np.zeros(spots + 2, np.int32),
+            left=np.zeros(spots + 2, np.int32),
+            before=np.zeros(spots + 2, np.int32),
+            chosen=np.zeros(spots + 2, np.int32),
+            inside=np.zeros(spots + 2, np.int32),
         )
-        late = np.arange(self.search.horizon) - int(requests.earliest[robot])
-        within = late[:, None] + durations[resource] + requests.rest[robot][resource] <= self.delays[robot]
-        side.often[:, :spots][~within] = 0
-        side.often[late > self.delays[robot], spots] = 0
-        return side
