@@ -5,7 +5,7 @@ the price of prioritized planning. The distance of a planner's total from it is 
 is below zero if the planner does better than any order, as one that replans robots may.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from carp_optimum.optimum import optimum
@@ -21,7 +21,6 @@ from carp_spec import (
     Neighbourhood,
     Plan,
     Planner,
-    RobotId,
     Shuffled,
     plan_cost,
     total_cost,
@@ -89,28 +88,22 @@ def best_order(instance: Instance, limit: float, floor: int = 0) -> int | None:
     if encoding.wayless:
         return None
     shortest = {robot.robot.id: robot.shortest or 0 for robot in encoding.robots}
-    return _Orders(instance, shortest, Deadline(limit), floor).best([], 0, encoding.shortest, None)
+    deadline = Deadline(limit)
 
-
-@dataclass(frozen=True, slots=True)
-class _Orders:
-    instance: Instance
-    shortest: Mapping[RobotId, int]
-    deadline: Deadline
-    floor: int
-
-    def best(self, plans: list[Plan], delay: int, shortest: int, known: int | None) -> int | None:
+    def best(plans: list[Plan], total: int, known: int | None) -> int | None:
         """The least total over the orders that begin with the plans, if it is less than what is known."""
-        self.deadline.check()
+        deadline.check()
         planned = {each.robot for each in plans}
-        if len(planned) == len(self.instance.robots):
-            return shortest + delay
-        for robot in self.instance.robots:
-            if robot.id in planned or (known is not None and max(shortest + delay, self.floor) >= known):
+        if len(planned) == len(instance.robots):
+            return total
+        for robot in instance.robots:
+            if robot.id in planned or (known is not None and max(total, floor) >= known):
                 continue
-            following = query(self.instance, plans, robot.id)
+            following = query(instance, plans, robot.id)
             if following is not None:
-                later = delay + plan_cost(self.instance, following) - self.shortest[robot.id]
-                if known is None or shortest + later < known:
-                    known = self.best([*plans, following], later, shortest, known)
+                later = total + plan_cost(instance, following) - shortest[robot.id]
+                if known is None or later < known:
+                    known = best([*plans, following], later, known)
         return known
+
+    return best([], encoding.shortest, None)

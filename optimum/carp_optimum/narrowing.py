@@ -13,7 +13,7 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing, suppress
 from dataclasses import replace
 from functools import partial
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 from carp_optimum.branching.branching import Branching
 from carp_optimum.lagrangian.reduced_costs import PricedBound
@@ -47,12 +47,14 @@ def narrowed(instance: Instance, look: Callable[[], None]) -> Results:
 
     `look` is called now and then, and may end it by an exception. Raises `Refusal` for numbers that are too large.
     """
+    from carp_optimum.bound import lower_bound  # noqa: PLC0415 - slow to load
+
     work, known, better = yield from _planned(instance, look)
     robots = len(instance.robots)
     work_of_step = WORK_OF_STEP + WORK_OF_STEP_BY_TEN_RESOURCES * len(instance.graph.resources) // 10
     work += PRICE_STEPS * work_of_step * robots
     yield work, known
-    bound = _priced_bound(instance, look)
+    bound = PricedBound(instance, lower_bound(instance, steps=PRICE_STEPS, on_step=lambda _: look(), seen=False))
     known = replace(known, lower=bound.certificate.bound)
     work, known = yield from _raised(
         known,
@@ -76,7 +78,8 @@ def half_narrowed(instance: Instance, look: Callable[[], None], half: int) -> Re
     """
     work, known, _ = yield from _planned(instance, look)
     if known.total is not None:
-        known = replace(known, lower=_crowd_bound(instance, known.total, look))
+        with suppress(Refusal):
+            known = replace(known, lower=Branching(instance, known.total - 1, look).least_of_all())
         branching = partial(Branching, instance, look=look, half=half)
         work, known = yield from _raised(known, work, STRIDE_OF_CROWD, branching)
         yield work, known
@@ -100,7 +103,7 @@ def _raised(
     known: Between,
     work: int,
     stride: int,
-    search_for: Callable[[int], "_Search"],
+    search_for: Callable[[int], "_Formula | Branching"],
     is_near: Callable[[int], bool] = lambda _: True,
 ) -> Generator[tuple[int, Between], None, tuple[int, Between]]:
     """The results of searches for plans of at most ever larger totals, as long as the bound is near enough for them.
@@ -126,33 +129,8 @@ def _raised(
     return work, known
 
 
-class _Search(Protocol):
-    """The search for the cheapest plans of at most a total; after it, no plans cost less than `least`."""
-
-    plans: Sequence[Plan] | None
-    least: int
-    work: int
-
-    def run(self) -> Iterator[int]:
-        """Search, and give the work so far now and then, and where `plans` are better."""
-        ...
-
-
-def _crowd_bound(instance: Instance, total: int, look: Callable[[], None]) -> int:
-    """The bound of all parts together, where plans of this total are known; 0 if its tables would be too large."""
-    with suppress(Refusal):
-        return Branching(instance, total - 1, look).least_of_all()
-    return 0
-
-
-def _priced_bound(instance: Instance, look: Callable[[], None]) -> PricedBound:
-    from carp_optimum.bound import lower_bound  # noqa: PLC0415 - slow to load
-
-    return PricedBound(instance, lower_bound(instance, steps=PRICE_STEPS, on_step=lambda _: look(), seen=False))
-
-
 class _Formula:
-    """A search by a formula with prices."""
+    """A search by a formula with prices for the cheapest plans of at most a total, as `Branching` is one."""
 
     def __init__(self, instance: Instance, bound: PricedBound, most: int, look: Callable[[], None]) -> None:
         self.priced = priced_formula(instance, bound, most, look)
@@ -162,7 +140,7 @@ class _Formula:
         self.work = 0
 
     def run(self) -> Iterator[int]:
-        """Search: see `_Search`."""
+        """Search, and give the work so far now and then."""
         encoding = self.priced.encoding
         with closing(Solver(encoding.formula, self.look, glucose=True)) as solver:
             while (answer := solver.satisfiable([], CONFLICTS)) is not False:

@@ -8,7 +8,7 @@ from tests.verify.bound_examples import completed
 from tests.verify.tiny import TINY
 
 from carp_optimum.bound import lower_bound
-from carp_optimum.lagrangian.reduced_costs import PricedBound
+from carp_optimum.lagrangian.reduced_costs import PricedBound, ReducedCosts
 from carp_optimum.sat.core_guided import core_guided
 from carp_optimum.sat.priced_formula import priced_formula
 from carp_optimum.sat.solver import Deadline, Solver
@@ -101,6 +101,6 @@ def test_the_certificate_s_deadlines_count(seed: int, after_goal: AfterGoal) -> 
     encoding = Encoding(instance)
     shortest = {robot.robot.id: robot.shortest or 0 for robot in encoding.robots}
     for robot in encoding.robots:
-        assert min(bound.reduced(robot, shortest, least + 6).delays.values()) == 0
+        assert min(ReducedCosts(bound, robot, shortest, least + 6).delays.values()) == 0
     assert cheapest(instance, bound, least) == least
     assert cheapest(instance, bound, least - 1) is None

@@ -167,7 +167,9 @@ def find_ways(part: Part) -> int:
     live = part.live
     node, arc, to, row, least = live.node, live.arc, live.to, live.row, live.least
     place, tick, paid, choice = nodes.place, nodes.tick, part.rows.paid, live.choice
-    clear_use(part)
+    for each in range(part.rows.used.size):
+        part.rows.used[each] = 0
+    part.counters[LAST] = 0
     total = 0
     for robot in range(nodes.goal.size):
         first = int(live.of_robot[robot])
@@ -187,15 +189,6 @@ def find_ways(part: Part) -> int:
         use_way(part, robot)
     part.counters[WORK] = int(part.counters[WORK]) + int(arc[int(live.of_robot[nodes.goal.size])])
     return total
-
-
-@compiled
-def clear_use(part: Part) -> None:
-    """Take all ways from the rows."""
-    used = part.rows.used
-    for row in range(used.size):
-        used[row] = 0
-    part.counters[LAST] = 0
 
 
 @compiled

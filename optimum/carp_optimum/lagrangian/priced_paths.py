@@ -8,7 +8,7 @@ paid is kept for the next ticks alone: so it stays in the processor's cache. Sou
 graph, as in `carp_verify.optimum.robot_clauses`.
 """
 
-from carp_optimized.jit.compiling import compiled, entry
+from carp_optimized.jit.compiling import compiled, entry, inlined
 from carp_optimized.jit.references import Native
 from carp_optimized.queries.heap import push, replace_root
 from carp_optimized.state.arrays import NONE
@@ -186,19 +186,20 @@ def way_price(market: Market, robot: int) -> int:
     return paid + goal_price(market, robot, arrival) + int(market.charges.cost[robot][delay])
 
 
-@compiled
-def fee_of(market: Market, robot: int, here: int, tick: int) -> int:
-    """The payment of a robot that is seen in the resource at the tick, which is before the horizon."""
-    return int(market.charges.fee[int(market.charges.row[robot][tick])][here])
+@inlined
+def fees_of(market: Market, robot: int, here: int, begin: int, end: int) -> int:
+    """The payment of a robot that is seen in the resource at ticks in [begin, end), on its way."""
+    paid = 0
+    row = market.charges.row[robot]
+    for tick in range(begin, min(end, market.horizon)):
+        paid += int(market.charges.fee[int(row[tick])][here])
+    return paid
 
 
 @compiled
 def price_on_way(market: Market, robot: int, here: int, enter: int, leave: int) -> int:
     """The price of a stay in [enter, leave) on the way, where the robot is seen included."""
-    paid = stay_price(market, here, enter, leave)
-    for tick in range(enter, min(leave, market.horizon)):
-        paid += fee_of(market, robot, here, tick)
-    return paid
+    return stay_price(market, here, enter, leave) + fees_of(market, robot, here, enter, leave)
 
 
 @compiled
@@ -247,15 +248,13 @@ def find_free(market: Market, robot: int) -> bool:
     return False
 
 
-@compiled
+@inlined
 def entry_price(market: Market, robot: int, move: int, tick: int, ready: int) -> int:
     """The price of moving at the tick, and of a stay on the way until the robot is ready to leave again."""
     target = int(market.graph.target[move])
-    entering = market.prices.entering[min(tick, market.horizon)]
-    paid = int(entering[int(market.exchanges.row[move])]) + further_price(market, target, tick + 1, ready)
-    for later in range(tick, min(ready, market.horizon)):
-        paid += fee_of(market, robot, target, later)
-    return paid
+    moving = int(market.prices.entering[min(tick, market.horizon)][int(market.exchanges.row[move])])
+    staying = further_price(market, target, tick + 1, ready)
+    return moving + staying + fees_of(market, robot, target, tick, ready)
 
 
 @compiled
@@ -272,8 +271,11 @@ def settle(market: Market, robot: int, best: int) -> int:
     delay = tick + int(rest[start]) - earliest
     if delay >= market.delays:
         return best
-    pending = begin(market, robot, tick, price_on_way(market, robot, start, release, tick))
     size = market.graph.duration.size
+    place = tick % scratch.head.size
+    paid = price_on_way(market, robot, start, release, tick)
+    scratch.generation[0] = int(scratch.generation[0]) + scratch.parent.size
+    pending = reach(scratch, place, place * size + start, (tick - release) * size + start, paid, NONE)
     found = NONE
     while pending > 0:
         place = tick % scratch.head.size
@@ -298,18 +300,6 @@ def settle(market: Market, robot: int, best: int) -> int:
     if found != NONE:
         take_way(market, robot, found)
     return best
-
-
-@compiled
-def begin(market: Market, robot: int, tick: int, paid: int) -> int:
-    """Begin a search at the node of the robot's start; returns 1."""
-    scratch = market.scratch
-    size = market.graph.duration.size
-    start = int(market.requests.start[robot])
-    place = tick % scratch.head.size
-    node = (tick - int(market.requests.release[robot])) * size + start
-    scratch.generation[0] = int(scratch.generation[0]) + scratch.parent.size
-    return reach(scratch, place, place * size + start, node, paid, NONE)
 
 
 @compiled
@@ -342,11 +332,6 @@ def leave(market: Market, robot: int, node: int, tick: int, paid: int) -> int:
     graph = market.graph
     rest = market.requests.rest[robot]
     earliest = int(market.requests.earliest[robot])
-    waiting = market.prices.waiting[min(tick, market.horizon)]
-    entering = market.prices.entering[min(tick, market.horizon)]
-    rows = market.limits.row
-    entries = market.exchanges.row
-    fee = market.charges.fee[int(market.charges.row[robot][tick]) if tick < market.horizon else 0]
     scratch = market.scratch
     size = graph.duration.size
     here = node - (tick - int(market.requests.release[robot])) * size
@@ -354,7 +339,8 @@ def leave(market: Market, robot: int, node: int, tick: int, paid: int) -> int:
     reached = 0
     if tick + int(rest[here]) - earliest + 1 < market.delays:
         place = place_after(scratch, now, 1)
-        waited = paid + int(waiting[int(rows[here])]) + int(fee[here])
+        waited = paid + int(market.prices.waiting[min(tick, market.horizon)][int(market.limits.row[here])])
+        waited += fees_of(market, robot, here, tick, tick + 1)
         reached += reach(scratch, place, place * size + here, node + size, waited, node)
     for move in range(int(graph.first[here]), int(graph.first[here + 1])):
         target = int(graph.target[move])
@@ -362,10 +348,7 @@ def leave(market: Market, robot: int, node: int, tick: int, paid: int) -> int:
             ready = tick + duration_of(market, robot, target)
             delay = ready + int(rest[target]) - earliest
             if delay < market.delays:
-                moved = paid + int(entering[int(entries[move])]) + int(fee[target])
-                moved += further_price(market, target, tick + 1, ready)
-                for later in range(tick + 1, min(ready, market.horizon)):
-                    moved += fee_of(market, robot, target, later)
+                moved = paid + entry_price(market, robot, move, tick, ready)
                 place = place_after(scratch, now, ready - tick)
                 after = node - here + (ready - tick) * size + target
                 reached += reach(scratch, place, place * size + target, after, moved, node)
@@ -438,9 +421,8 @@ def see_ways(native: Native[Market]) -> None:
             while tick < enter:
                 place[robot][tick] = here
                 tick += 1
-            here = int(market.ways.resource[robot][visit])
-        if market.ways.length[robot] > 0:
-            here = market.graph.duration.size
+            is_last = visit + 1 == market.ways.length[robot]
+            here = market.graph.duration.size if is_last else int(market.ways.resource[robot][visit])
         while tick < market.horizon:
             place[robot][tick] = here
             tick += 1

@@ -8,20 +8,11 @@ these plans (*reduced cost fixing*), and the robots share the gap.
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from carp_spec import Instance, ResourceId, RobotId
 from carp_spec.documents.bounds import BoundDocument
 from carp_verify.bound.tariff import Tariff, fees_of
 from carp_verify.optimum.robot_clauses import Node, RobotClauses
-
-
-@dataclass(frozen=True, slots=True)
-class Reduced:
-    """The reduced costs of nodes and of delays, in parts of a tick; those left out exceed the gap."""
-
-    nodes: Mapping[Node, int]
-    delays: Mapping[int, int]
 
 
 class PricedBound:
@@ -42,15 +33,15 @@ class PricedBound:
         """The parts of a tick by which plans of this total cost more than the bound."""
         return cost * self.scale - self.parts
 
-    def reduced(self, robot: RobotClauses, shortest: Mapping[RobotId, int], cost: int) -> Reduced:
-        """The reduced costs for plans of at most this total; `shortest` has those of all robots alone."""
-        return _Pricing(self, robot, shortest, cost).reduced()
 
+class ReducedCosts:
+    """The reduced costs of a robot's `nodes` and `delays`, in parts of a tick; those left out exceed the gap.
 
-class _Pricing:
-    """Finds the reduced costs of one robot: payments from the start on, tick by tick, then those up to the goal."""
+    They are payments from the start on, tick by tick, and then those up to the goal.
+    """
 
     def __init__(self, bound: PricedBound, robot: RobotClauses, shortest: Mapping[RobotId, int], cost: int) -> None:
+        """Find them for plans of at most this total; `shortest` has the costs of all robots alone."""
         name = robot.robot.id
         self.bound = bound
         self.robot = robot
@@ -62,21 +53,19 @@ class _Pricing:
         self.shortest = shortest[name]
         self.paid: dict[Node, int] = {}
         self.ways: dict[Node, list[tuple[Node | None, int]]] = {}
-        self.delays: dict[int, int] = {}
-
-    def reduced(self) -> Reduced:
-        """The nodes and delays within the gap, with their reduced costs."""
-        release, start = self.robot.robot.release, self.robot.robot.start
+        self.all_delays: dict[int, int] = {}
+        release, start = robot.robot.release, robot.robot.start
         if start == self.goal:
-            self.delays[0] = self.excess(0, self.stay_at_goal(release))
-        if start != self.goal or self.robot.nodes_within(self.longest) > 0:
+            self.all_delays[0] = self.excess(0, self.stay_at_goal(release))
+        if start != self.goal or robot.nodes_within(self.longest) > 0:
             ready = release + self._duration(start)
             self.pay((start, ready), self.stay(start, release, ready))
         rests: dict[Node | None, int] = {None: 0}
         for node in reversed(self.paid):
             rests[node] = min((price + rests[to] for to, price in self.ways[node] if to in rests), default=self.gap + 1)
-        nodes = {node: paid + rests[node] for node, paid in self.paid.items() if paid + rests[node] <= self.gap}
-        return Reduced(nodes, {delay: cost for delay, cost in sorted(self.delays.items()) if cost <= self.gap})
+        reduced = ((node, paid + rests[node]) for node, paid in self.paid.items())
+        self.nodes = {node: cost for node, cost in reduced if cost <= self.gap}
+        self.delays = {delay: cost for delay, cost in sorted(self.all_delays.items()) if cost <= self.gap}
 
     def pay(self, first: Node, payment: int) -> None:
         """Find the least payments from the first node up to each, in the order of ticks."""
@@ -108,7 +97,7 @@ class _Pricing:
         if self.goal in self.bound.instance.graph.successors[resource]:
             delay = tick - self.robot.earliest
             last = self.excess(delay, tariff.move(resource, self.goal, tick) + self.stay_at_goal(tick))
-            self.delays[delay] = min(paid + last, self.delays.get(delay, paid + last))
+            self.all_delays[delay] = min(paid + last, self.all_delays.get(delay, paid + last))
             yield None, last
 
     def excess(self, delay: int, paid: int) -> int:

@@ -162,12 +162,9 @@ def duration_of(market: Market, robot: int, resource: int) -> int:
 @compiled
 def stay_price(market: Market, resource: int, enter: int, leave: int) -> int:
     """The price of a stay in [enter, leave)."""
-    row = int(market.limits.row[resource])
-    stay = market.prices.stay[row]
-    across = market.prices.across[row]
-    end = min(leave, market.horizon)
-    present = int(stay[end]) - int(stay[min(enter, end)])
-    return present + int(across[end]) - int(across[min(enter + 1, end)])
+    stay = market.prices.stay[int(market.limits.row[resource])]
+    at_first = int(stay[min(enter + 1, market.horizon)]) - int(stay[min(enter, market.horizon)])
+    return at_first + further_price(market, resource, enter + 1, leave)
 
 
 @compiled

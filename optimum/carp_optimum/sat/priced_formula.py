@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
-from carp_optimum.lagrangian.reduced_costs import PricedBound, Reduced
+from carp_optimum.lagrangian.reduced_costs import PricedBound, ReducedCosts
 from carp_optimum.sat.totalizer_order import groups_of_near, sum_of_near
 from carp_spec import Instance, ResourceId
 from carp_verify.optimum.clauses import Formula, Literal, Unary
@@ -44,12 +44,12 @@ def priced_formula(instance: Instance, bound: PricedBound, cost: int, look: Call
     """
     encoding = Encoding(instance, look, MOST_CLAUSES)
     shortest = {robot.robot.id: robot.shortest or 0 for robot in encoding.robots}
-    described: list[tuple[RobotClauses, Reduced]] = []
+    described: list[tuple[RobotClauses, ReducedCosts]] = []
     for robot in encoding.robots:
         look()
         horizon = 0
         if instance.after_goal == "park" or robot.robot.start != robot.robot.goal:
-            reduced = bound.reduced(robot, shortest, cost)
+            reduced = ReducedCosts(bound, robot, shortest, cost)
             described.append((robot, reduced))
             robot.keep_only(reduced.nodes)
             horizon = max(reduced.delays, default=0)
@@ -110,7 +110,7 @@ def _number(formula: Formula, most: int) -> list[Literal]:
 
 
 def _reduced_cost(
-    formula: Formula, robot: RobotClauses, nodes: Mapping[Node, int], reduced: Reduced, unit: int
+    formula: Formula, robot: RobotClauses, nodes: Mapping[Node, int], reduced: ReducedCosts, unit: int
 ) -> list[Literal]:
     """A number that is at least the level of each node that the robot passes, and of its delay."""
     delays = {delay: _level(cost, unit) for delay, cost in reduced.delays.items()}
