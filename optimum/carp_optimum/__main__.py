@@ -20,7 +20,7 @@ def compile_all() -> None:
     search.add_deadlines([Deadlines([Member(0, 0, 0, ()), Member(1, 0, 1, (1,))])])
     SightSearch(search).round(lambda: None)
     list(Branching(instance, 12, lambda: None).run())
-    search.finish()
+    search.restore()
     search.least_costs()
     note_that_it_is_compiled("carp_optimum")
 

@@ -9,10 +9,12 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
-from multiprocessing.process import BaseProcess
-from typing import Generic, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeAlias, TypeVar
 
 from carp_spec import Refusal
+
+if TYPE_CHECKING:
+    from multiprocessing.process import BaseProcess
 
 Result = TypeVar("Result")
 Look: TypeAlias = Callable[[], None]
@@ -33,22 +35,22 @@ class BackgroundSearch(Generic[Result]):
         self._found: deque[tuple[int, Result | None]] = deque()
         self._result: Result | None = None
         self._work = 0
-        self._ended = False
+        self.has_ended = False
+        """Whether all results of the search are known."""
         self._process: BaseProcess | None = None
         self._receiver: Connection | None = None
         if own_process:
-            self._process, self._receiver = _started(search)
+            spawning = get_context("spawn")
+            self._receiver, sender = spawning.Pipe(duplex=False)
+            self._process = spawning.Process(target=_run, args=(search, sender), daemon=True)
+            self._process.start()
+            sender.close()
         else:
             self._steps = _changes(search(look))
 
-    @property
-    def has_ended(self) -> bool:
-        """Whether all results of the search are known."""
-        return self._ended
-
     def result(self, work: int) -> Result | None:
         """The last result before the search has done more than this work; `None` if it had none."""
-        while self._work <= work and not self._ended:
+        while self._work <= work and not self.has_ended:
             while self._receiver is not None and not self._receiver.poll(PATIENCE):
                 self._look()
             self._take()
@@ -61,7 +63,7 @@ class BackgroundSearch(Generic[Result]):
 
     def read(self) -> None:
         """Take in what the search has found; its process waits if this is not called for long."""
-        while self._receiver is not None and not self._ended and self._receiver.poll():
+        while self._receiver is not None and not self.has_ended and self._receiver.poll():
             self._take()
 
     def close(self) -> None:
@@ -83,7 +85,7 @@ class BackgroundSearch(Generic[Result]):
         try:
             step = next(self._steps) if self._receiver is None else self._receiver.recv()
         except (EOFError, StopIteration, Refusal):
-            self._ended = True
+            self.has_ended = True
             return
         if isinstance(step, Exception):
             raise step
@@ -99,24 +101,13 @@ def _changes(steps: Iterator[tuple[int, Result]]) -> Iterator[tuple[int, Result 
         before = result
 
 
-def _started(search: Search[Result]) -> tuple[BaseProcess, Connection]:
-    """A process that runs the search, and the end of a pipe through which its steps come."""
-    spawning = get_context("spawn")
-    receiver, sender = spawning.Pipe(duplex=False)
-    process = spawning.Process(target=_run, args=(search, sender), daemon=True)
-    process.start()
-    sender.close()
-    return process, receiver
-
-
-def _never() -> None:
-    """Look at no clock: one who waits does that, and ends the process."""
-
-
 def _run(search: Search[Result], sender: Connection) -> None:
-    """Send all steps of the search, or the exception that ended it."""
+    """Send all steps of the search, or the exception that ended it.
+
+    It looks at no clock: one who waits does that, and ends the process.
+    """
     try:
-        for step in _changes(search(_never)):
+        for step in _changes(search(lambda: None)):
             sender.send(step)
     except (Refusal, OSError):
         pass  # it has ended, or nobody listens any more

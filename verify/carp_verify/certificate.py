@@ -10,6 +10,7 @@ instead. The rules of single plans and of the list of plans get no second opinio
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache, partial
 from itertools import pairwise, product
 from typing import TypeAlias
 
@@ -67,22 +68,12 @@ class Terms:
     def __init__(self) -> None:
         """Begin with a tick about which nothing is known."""
         self.tick: Int = integer("tick")
-        self._stays: dict[tuple[int, int | None], Bool] = {}
-        self._ticks: dict[int, Bool] = {}
+        self.in_stay = cache(self._in_stay)
+        self.is_at = cache(partial(equal, self.tick))
 
-    def in_visit(self, visit: Visit) -> Bool:
-        """Whether the tick is in the visit."""
-        stay = (visit.enter, visit.leave)
-        if stay not in self._stays:
-            within = self.tick >= visit.enter if visit.leave is None else between(visit.enter, self.tick, visit.leave)
-            self._stays[stay] = within
-        return self._stays[stay]
-
-    def is_at(self, tick: int) -> Bool:
-        """Whether the tick is this one."""
-        if tick not in self._ticks:
-            self._ticks[tick] = equal(self.tick, tick)
-        return self._ticks[tick]
+    def _in_stay(self, enter: int, leave: int | None) -> Bool:
+        """Whether the tick is in [enter, leave)."""
+        return self.tick >= enter if leave is None else between(enter, self.tick, leave)
 
 
 def certify(instance: Instance, solution: Solution, advance: Callable[[], None] = lambda: None) -> Certificate:
@@ -184,7 +175,9 @@ def longer(stays: Stays, gap: int) -> Stays:
 
 def overfull(solver: Solver, terms: Terms, place: Place, stays: Stays) -> Iterator[Breach]:
     """A tick at which more robots are in the place than its capacity, if there is one."""
-    occupies = {robot: any_of(*map(terms.in_visit, visits)) for robot, visits in stays.items()}
+    occupies = {
+        robot: any_of(*(terms.in_stay(each.enter, each.leave) for each in visits)) for robot, visits in stays.items()
+    }
     model = solver.find_model([at_least(place.capacity + 1, list(occupies.values()))])
     if model is not None:
         robots, tick = _robots_of(model, occupies), int(model.value(terms.tick))
@@ -204,9 +197,8 @@ def exchanged(solver: Solver, terms: Terms, there: Moves, back: Moves) -> Iterat
     )
     both = {robot: any_of(goes[robot], comes[robot]) for robot in goes if robot in comes}
     movers = {**goes, **comes, **both}
-    different = (
-        [at_least(2, list(movers.values()))] if both else []
-    )  # else the robot that goes is not the one that comes
+    # without any that does both, the robot that goes is not the one that comes
+    different = [at_least(2, list(movers.values()))] if both else []
     model = solver.find_model([any_of(*goes.values()), any_of(*comes.values()), *different])
     if model is not None:
         tick = int(model.value(terms.tick))

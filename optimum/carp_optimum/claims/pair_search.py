@@ -125,7 +125,7 @@ class SightSearch:
         search = self.search
         if all(each.refutation for each in search.deadlines):
             return
-        search.finish()
+        search.restore()
         kept = [number for number, each in enumerate(search.deadlines) if each.refutation]
         priced = {number: fee for number, fee in enumerate(search.fees.tolist()) if fee > 0 and number not in kept}
         try:

@@ -132,7 +132,7 @@ class PriceSearch:
     def _bound(self, check: Callable[[], None] = lambda: None) -> int:
         """The bound that the prices prove; gives each robot a cheapest way.
 
-        `check` is called after every few robots, and may raise `TimeOver`: then only `_restore` makes all whole again.
+        `check` is called after every few robots, and may raise `TimeOver`: then only `restore` makes all whole again.
         """
         began = self._clock()
         worth = int((self.fees * (self._flat.sizes - 1)).sum())
@@ -178,7 +178,7 @@ class PriceSearch:
         fee[:] = 0
         np.add.at(fee, (flat.row, flat.place), self.fees[flat.group_of_place])
 
-    def _restore(self) -> int:
+    def restore(self) -> int:
         """Go back to the best prices, without a course: their bound."""
         forget_prices(self.native)
         kept = self._kept
@@ -199,7 +199,7 @@ class PriceSearch:
     def keep_deadlines(self, numbers: Sequence[int]) -> None:
         """Keep the deadlines with these numbers alone, with their prices; the best bound is then what they prove."""
         self._select(numbers)
-        self.best = self._restore()
+        self.best = self.restore()
 
     def drop_idle_deadlines(self) -> None:
         """Drop the deadlines without proof that have no price, neither now nor among the best prices."""
@@ -246,14 +246,11 @@ class PriceSearch:
 
     def delays(self) -> Longs:
         """The delays of the robots' cheapest ways; 0 for one that has none."""
-        requests = self.market.requests
-        return np.maximum(self.costs() - (requests.earliest - requests.release), 0)
-
-    def costs(self) -> Longs:
-        """The costs of the robots' cheapest ways, in ticks without prices."""
-        ways = self.market.ways
+        requests, ways = self.market.requests, self.market.ways
         last = np.maximum(ways.length - 1, 0)
-        return np.where(ways.length > 0, ways.enter[np.arange(len(last)), last] - self.market.requests.release, 0)
+        costs = np.where(ways.length > 0, ways.enter[np.arange(len(last)), last] - requests.release, 0)
+        delays: Longs = np.maximum(costs - (requests.earliest - requests.release), 0)
+        return delays
 
     def _step(self, aim: int, bound: int) -> bool:
         """Change prices that prove this bound to be so much above the best; false if there is nothing to be gained."""
@@ -283,7 +280,7 @@ class PriceSearch:
         `check` is called before each, and may raise `TimeOver`, and `on_step` after it.
         """
         check()
-        bound = self._restore()
+        bound = self.restore()
         self.best = max(self.best, bound)
         aim = max(first_aim, last_aim)
         failures = 0
@@ -303,7 +300,7 @@ class PriceSearch:
                 failures = 0
                 before = self.best
                 aim = min(aim, max(aim // OVERSHOT, self.best // LEAST_PARTS)) if overshot else aim * 3 // 4
-                bound = self._restore()
+                bound = self.restore()
             on_step()
 
     def roam(self, first_aim: int, last_aim: int, check: Callable[[], None], on_step: Callable[[], None]) -> None:
@@ -314,7 +311,7 @@ class PriceSearch:
         begins with twice the aim if enough of it was gained, and with half if not; the steps end when that is below the
         last aim.
         """
-        bound = self._restore()
+        bound = self.restore()
         aim = max(first_aim, last_aim)
         while aim >= last_aim:
             before = self.best
@@ -326,13 +323,9 @@ class PriceSearch:
                 on_step()
             aim = aim * 2 if (self.best - before) * ENOUGH_OF_SPAN > aim else aim // 2
 
-    def finish(self) -> None:
-        """Go back to the best prices."""
-        self._restore()
-
     def wander(self, steps: int, aim: int) -> Iterator[None]:
         """Take this many steps near the best prices, one by one."""
-        bound = self._restore()
+        bound = self.restore()
         for _ in range(steps):
             self._step(aim, bound)
             bound = self._bound()
@@ -358,11 +351,6 @@ class PriceSearch:
             tuple((*moves[number], tick, price) for number, tick, price in exchanges),
             tuple((ids[number], tick, price) for number, tick, price in limits if number >= size),
         )
-
-    @property
-    def worth(self) -> int:
-        """The prices times the capacities."""
-        return int(self.market.prices.worth[0])
 
     def least_costs(self) -> tuple[tuple[RobotId, int | None], ...]:
         """What each robot claims: its least priced cost, `None` where it cannot reach its goal.

@@ -156,7 +156,8 @@ class CoreGuided:
             while answer is None:
                 self.read_beside()
                 if self.known.plans is not None and self.is_met:
-                    return self.optimal_beside(self.known.plans)
+                    self.horizon = self.lower - self.encoding.shortest  # suffices for a proof
+                    return self.optimal(self.known.plans)
                 answer = self.solver.satisfiable(assumptions, CONFLICTS_BETWEEN_RESULTS)
             if answer:
                 plans = [plan for plan in self.encoding.plans(self.solver.model()) if plan is not None]
@@ -271,11 +272,6 @@ class CoreGuided:
         require_kept(self.lower, cost)
         solution = self.solution(plans)
         return Optimum(self.encoding.shortest, cost, cost, decided=True, solution=solution, evidence=self.evidence)
-
-    def optimal_beside(self, plans: Sequence[Plan]) -> Optimum:
-        """The optimum found beside, with horizons that suffice for a proof."""
-        self.horizon = self.lower - self.encoding.shortest
-        return self.optimal(plans)
 
     def unsolvable(self, obstacle: Obstacle) -> Optimum:
         """The answer that no plan set exists."""

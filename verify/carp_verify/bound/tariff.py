@@ -1,14 +1,17 @@
 """What a robot pays by the prices of a certificate: in resources, for moves, and for the deadlines that it keeps."""
 
 from bisect import bisect_left
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from itertools import accumulate
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import accumulate, chain
 from operator import itemgetter
+from typing import TypeAlias
 
 from carp_spec import Instance, ResourceGraph, ResourceId, RobotId
 from carp_spec.documents.bounds import BoundDocument, DeadlinesDocument
-from carp_spec.model import Group
 from carp_verify.bound.rules import LARGEST_TABLE, is_new, is_price, require, require_size
+
+Row: TypeAlias = tuple[tuple[ResourceId, ...], int, int]
+"""A group, a resource or the two of an exchange, with a tick and a price."""
 
 
 class Fees:
@@ -66,13 +69,22 @@ class Tariff:
         across: dict[ResourceId, dict[int, int]] = {}
         graph = instance.graph
         groups = {group.id: group for group in graph.groups}
-        for id, tick, price in self._group_prices(certificate, groups):
+        size = sum(len(groups[id].resources) for id, _, _ in certificate.groups if id in groups)
+        require_size(size, LARGEST_TABLE, "$.groups", "the resources of groups with prices")
+        horizon, either = certificate.horizon, "a resource, or two with a move each way"
+        of_groups: Iterator[Row] = (((id,), tick, price) for id, tick, price in certificate.groups)
+        for (id,), tick, price in _checked("groups", of_groups, horizon, lambda place: place[0] in groups, "a group"):
             self.horizon = max(self.horizon, tick + 1)
             for resource in groups[id].resources:
-                of_groups = present.setdefault(resource, {})
-                of_groups[tick] = of_groups.get(tick, 0) + price
+                of_resource = present.setdefault(resource, {})
+                of_resource[tick] = of_resource.get(tick, 0) + price
             self.worth += price * groups[id].capacity
-        for place, tick, price in self._prices(certificate):
+        alone: Iterator[Row] = (((resource,), tick, price) for resource, tick, price in certificate.resources)
+        pairs: Iterator[Row] = (((one, other), tick, price) for one, other, tick, price in certificate.exchanges)
+        for place, tick, price in chain(
+            _checked("resources", alone, horizon, lambda place: place[0] in graph.index, either),
+            _checked("exchanges", pairs, horizon, lambda place: is_both_ways(graph, *place), either),
+        ):
             source = place[0]
             self.horizon = max(self.horizon, tick + 1)
             if len(place) == 1:
@@ -87,41 +99,6 @@ class Tariff:
         require_size(size, LARGEST_TABLE, "$.resources", "the prices by resource and tick, up to the last,")
         self.present = {resource: self._sums(prices) for resource, prices in present.items()}
         self.across = {resource: self._sums(prices) for resource, prices in across.items()}
-
-    def _group_prices(
-        self, certificate: BoundDocument, groups: Mapping[ResourceId, Group]
-    ) -> Iterator[tuple[ResourceId, int, int]]:
-        """The prices of groups, checked."""
-        known: set[tuple[ResourceId, int]] = set()
-        size = sum(len(groups[id].resources) for id, _, _ in certificate.groups if id in groups)
-        require_size(size, LARGEST_TABLE, "$.groups", "the resources of groups with prices")
-        for number, (id, tick, price) in enumerate(certificate.groups):
-            path = f"$.groups[{number}]"
-            message = f"{price!r} at {tick!r} must be a price of at least 0 at a tick below {certificate.horizon}"
-            require(is_price, is_price(price, tick, certificate.horizon), path, message)
-            require(is_price, id in groups, path, f"{id} must be a group")
-            require(is_new, is_new((id, tick), known), path, f"{id} must have one price at tick {tick}")
-            known.add((id, tick))
-            yield id, tick, price
-
-    def _prices(self, certificate: BoundDocument) -> Iterator[tuple[tuple[ResourceId, ...], int, int]]:
-        """The prices with their places, checked: one resource, or the two of an exchange."""
-        rows: list[tuple[tuple[ResourceId, ...], int, int]] = [
-            ((resource,), tick, price) for resource, tick, price in certificate.resources
-        ]
-        pairs = [((source, target), tick, price) for source, target, tick, price in certificate.exchanges]
-        graph = self.instance.graph
-        known: set[tuple[tuple[ResourceId, ...], int]] = set()
-        for number, (place, tick, price) in enumerate([*rows, *pairs]):
-            path = f"$.resources[{number}]" if number < len(rows) else f"$.exchanges[{number - len(rows)}]"
-            message = f"{price!r} at {tick!r} must be a price of at least 0 at a tick below {certificate.horizon}"
-            require(is_price, is_price(price, tick, certificate.horizon), path, message)
-            exists = place[0] in graph.index if len(place) == 1 else is_both_ways(graph, *place)
-            shown = " and ".join(map(str, place))
-            require(is_price, exists, path, f"{shown} must be a resource, or two with a move each way")
-            require(is_new, is_new((place, tick), known), path, f"{shown} must have one price at tick {tick}")
-            known.add((place, tick))
-            yield place, tick, price
 
     def _sums(self, prices: Mapping[int, int]) -> Sequence[int]:
         """The sum of the prices before each tick, up to the horizon."""
@@ -150,6 +127,21 @@ class Tariff:
             if prices is not None:
                 paid += prices.get(tick, 0)
         return paid
+
+
+def _checked(
+    field: str, rows: Iterable[Row], horizon: int, exists: Callable[[tuple[ResourceId, ...]], bool], right: str
+) -> Iterator[Row]:
+    """The prices of a field of a certificate, each checked before it is given."""
+    known: set[tuple[tuple[ResourceId, ...], int]] = set()
+    for number, (place, tick, price) in enumerate(rows):
+        path, shown = f"$.{field}[{number}]", " and ".join(map(str, place))
+        message = f"{price!r} at {tick!r} must be a price of at least 0 at a tick below {horizon}"
+        require(is_price, is_price(price, tick, horizon), path, message)
+        require(is_price, exists(place), path, f"{shown} must be {right}")
+        require(is_new, is_new((place, tick), known), path, f"{shown} must have one price at tick {tick}")
+        known.add((place, tick))
+        yield place, tick, price
 
 
 def is_both_ways(graph: ResourceGraph, source: ResourceId, target: ResourceId) -> bool:

@@ -69,8 +69,7 @@ class Encoding:
         for robot, tick in zip_longest(instance.robots, seen):
             check()
             self.robots.append(RobotClauses(instance, robot, before, self.formula, tick))
-        self._presence: dict[tuple[int, int, int, int], tuple[Literal, set[Clause]]] = {}
-        self._leaves: dict[tuple[int, ResourceId, int], tuple[Literal, set[Literal]]] = {}
+        self._defined: dict[tuple[int | str, ...], tuple[Literal, set[Clause]]] = {}
 
     @property
     def wayless(self) -> list[Robot]:
@@ -90,40 +89,29 @@ class Encoding:
         robot, resources = self.robots[position], self.constraints[constraint].resources
         at = [(resource, tick - back) for resource in resources for back in range(gap + 1)]
         stays = list(dict.fromkeys(stay for each in at for stay in robot.stays(*each)))
-        if not stays:
+        return self._any_of(stays, (position, constraint, tick, gap))
+
+    def _any_of(self, alternatives: Sequence[Clause], key: tuple[int | str, ...]) -> Literal | None:
+        """A literal that holds if all literals of an alternative do; `None` without any. Those of a key only grow."""
+        if not alternatives:
             return None
-        if len(stays) == 1 and len(stays[0]) == 1:
-            return stays[0][0]
-        key = (position, constraint, tick, gap)
-        if key not in self._presence:
-            self._presence[key] = (self.formula.variable(), set())
-        literal, known = self._presence[key]
-        for stay in stays:
-            if stay not in known:
-                known.add(stay)
-                self.formula.add(*(-each for each in stay), literal)
+        if len(alternatives) == 1 and len(alternatives[0]) == 1:
+            return alternatives[0][0]
+        if key not in self._defined:
+            self._defined[key] = (self.formula.variable(), set())
+        literal, known = self._defined[key]
+        for each in alternatives:
+            if each not in known:
+                known.add(each)
+                self.formula.add(*(-one for one in each), literal)
         return literal
 
     def moves(self, position: int, source: ResourceId, target: ResourceId, tick: int) -> Clause | None:
         """Literals that hold together if the robot makes the move at the tick; `None` if it cannot."""
-        leaves = self._leaving(position, source, tick)
+        nodes = self.robots[position].leaving(source, tick)
+        leaves = self._any_of([(node,) for node in nodes], (position, source, tick))
         enters = None if leaves is None else self.presence(position, self.instance.graph.index[target], tick)
         return None if leaves is None or enters is None else (leaves, enters)
-
-    def _leaving(self, position: int, source: ResourceId, tick: int) -> Literal | None:
-        """A literal that holds if the robot may leave the resource at the tick; `None` if it cannot."""
-        nodes = self.robots[position].leaving(source, tick)
-        if len(nodes) <= 1:
-            return nodes[0] if nodes else None
-        key = (position, source, tick)
-        if key not in self._leaves:
-            self._leaves[key] = (self.formula.variable(), set())
-        literal, known = self._leaves[key]
-        for node in nodes:
-            if node not in known:
-                known.add(node)
-                self.formula.add(-node, literal)
-        return literal
 
     def forbid(self, conflict: Conflict | Exchange) -> None:
         """Add the clauses that forbid a conflict to all robots, as far as their horizons reach."""
@@ -205,7 +193,7 @@ def reach_formula(instance: Instance, cost: int, evidence: Evidence, most: int =
 
     Raises `Refusal` beyond `most` clauses.
     """
-    encoding = _bounded(instance, cost + 1, evidence, most)
+    encoding = beat_formula(instance, cost + 1, evidence, most)
     encoding.close()
     return encoding
 
@@ -215,15 +203,11 @@ def beat_formula(instance: Instance, cost: int | None, evidence: Evidence, most:
 
     Raises `Refusal` beyond `most` clauses.
     """
-    return _bounded(instance, cost, evidence, most)
-
-
-def _bounded(instance: Instance, bound: int | None, evidence: Evidence, most: int) -> Encoding:
     encoding = Encoding(instance, most=most)
     encoding.grow_to(evidence.horizons)
     encoding.forbid_all()
-    if bound is not None:
-        encoding.bound_delays(bound - encoding.shortest, evidence.order)
+    if cost is not None:
+        encoding.bound_delays(cost - encoding.shortest, evidence.order)
     return encoding
 
 
