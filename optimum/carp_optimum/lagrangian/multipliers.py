@@ -24,8 +24,8 @@ def refuse_table(path: str, what: str, entries: int, most: int = LARGEST_TABLE) 
         raise Refusal("limit", path, size_fits.id, message)
 
 
-def requests_of(instance: Instance, scale: int) -> Requests:
-    """The robots' requests; a tick weighs `scale`, and how far they are from their goals is to be found."""
+def requests_of(instance: Instance) -> Requests:
+    """The robots' requests; how far they are from their goals is to be found."""
     index, robots = instance.graph.index, instance.robots
     return Requests(
         start=np.array([index[robot.start] for robot in robots], np.int32),
@@ -34,7 +34,6 @@ def requests_of(instance: Instance, scale: int) -> Requests:
         pace=np.array([robot.pace for robot in robots], np.int32),
         earliest=np.zeros(len(robots), np.int64),
         rest=np.full((len(robots), len(index)), NONE, np.int32),
-        weight=np.full(len(robots), scale, np.int64),
     )
 
 

@@ -97,7 +97,7 @@ class PriceSearch:
         graph = encode_graph(instance)
         room = np.minimum(graph.room, robots).astype(np.int32)
         graph = graph._replace(capacity=room[:resources].copy(), room=room)
-        requests = requests_of(instance, scale)
+        requests = requests_of(instance)
         longest = max((robot.pace for robot in instance.robots), default=1) * int(graph.duration.max(initial=1))
         if not stay_is_searched(longest):
             message = f"the pace times the duration must be at most {LONGEST_STAY}, the limit, and is {longest}"
@@ -173,7 +173,7 @@ class PriceSearch:
         np.add.at(cost, (flat.robot[can], delay[can]), self.fees[flat.group[can]])
         cost[:] = np.cumsum(cost[:, ::-1], axis=1)[:, ::-1]
         ticks = np.arange(cost.shape[1]) + (requests.earliest - requests.release)[:, None]
-        cost += requests.weight[:, None] * ticks
+        cost += self.scale * ticks
         least[:] = np.minimum.accumulate(cost[:, ::-1], axis=1)[:, ::-1]
         fee[:] = 0
         np.add.at(fee, (flat.row, flat.place), self.fees[flat.group_of_place])
@@ -368,14 +368,15 @@ class PriceSearch:
         costs = dict(shortest)
         ids = [robot for robot, _ in shortest]
         left = MOST_STEPS
-        for position, least, taken in sorted(claims, key=lambda claim: self._steps_by_gain(*claim)):
+        for position, least, taken in sorted(claims, key=self._steps_by_gain):
             if taken <= left:
                 left -= taken
                 costs[ids[position]] = least
         return tuple(costs.items())
 
-    def _steps_by_gain(self, position: int, least: int, taken: int) -> Fraction:
+    def _steps_by_gain(self, claim: tuple[int, int, int]) -> Fraction:
         """How many steps the checker takes for a part of a tick of the claim that is more than the shortest way's."""
+        position, least, taken = claim
         requests = self.market.requests
         gain = least - self.scale * int(requests.earliest[position] - requests.release[position])
         return Fraction(taken, max(gain, 1))

@@ -18,7 +18,6 @@ class Requests(NamedTuple):
 
     `rest[robot][r]` is the least ticks from leaving r to entering the goal, `NONE` where no way leads there;
     `earliest` is the tick at which the robot enters its goal if nothing delays it, `NONE` if it never can.
-    `weight` is what a tick costs the robot.
     """
 
     start: Ints
@@ -27,7 +26,6 @@ class Requests(NamedTuple):
     pace: Ints
     earliest: Longs
     rest: IntTable
-    weight: Longs
 
 
 class Cells(NamedTuple):
@@ -74,7 +72,7 @@ class Prices(NamedTuple):
 class Charges(NamedTuple):
     """The costs of delays, and the fees and places of robots that are seen.
 
-    `cost[robot][delay]` is what an arrival costs: the ticks by the robot's weight, and the prices of the deadlines that
+    `cost[robot][delay]` is what an arrival costs: the ticks by the scale, and the prices of the deadlines that
     it keeps. `least` is the least of that and of all greater delays; the last column is for delays that no node has. A
     robot that is in a resource at a tick, on its way, pays by the row of the robot and tick: `fee[row][resource]`,
     which is 0 in row 0, that of robots and ticks without claims. `place` is where the robots' ways have them at each

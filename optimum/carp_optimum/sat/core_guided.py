@@ -283,10 +283,9 @@ class CoreGuided:
             self.take(self.beside.latest())
         known = self.known if self.best is None else self.known.with_plans(self.best)
         cost = known.total
-        if known.plans is None or cost is None:
-            return Optimum(self.encoding.shortest, None, self.lower, False, None, self.evidence)
-        require_kept(self.lower, cost)
-        solution = self.solution(known.plans)
+        if cost is not None:
+            require_kept(self.lower, cost)
+        solution = None if known.plans is None else self.solution(known.plans)
         return Optimum(self.encoding.shortest, cost, self.lower, cost == self.lower, solution, self.evidence)
 
     def solution(self, plans: Sequence[Plan]) -> Solution:

@@ -8,9 +8,7 @@ from collections.abc import Iterator, Sequence
 
 from carp_spec import Plan, Visit
 from carp_spec.model import ResourceGraph
-from carp_spec.refusal import Refusal
-from carp_verify.footprint.floor import Shape, Spot
-from carp_verify.footprint.rules import all_have_positions
+from carp_verify.footprint.floor import Shape, Spot, spots_of
 
 
 def swept_in_cells(graph: ResourceGraph, plans: Sequence[Plan], step: int) -> Iterator[tuple[Shape, Plan, Visit]]:
@@ -18,9 +16,7 @@ def swept_in_cells(graph: ResourceGraph, plans: Sequence[Plan], step: int) -> It
 
     Raises `Refusal` for a resource without a position.
     """
-    for fault in all_have_positions(graph.resources):
-        raise Refusal("document", fault.path, fault.rule, fault.message)
-    spot = {each.id: (step * (each.x or 0), step * (each.y or 0)) for each in graph.resources}
+    spot = {each: (step * x, step * y) for each, (x, y) in spots_of(graph).items()}
     for plan in plans:
         known = [each for each in plan.visits if each.resource in spot]
         spots = [spot[each.resource] for each in known]

@@ -29,9 +29,7 @@ class Shape:
 
 def shapes(graph: ResourceGraph) -> Mapping[ResourceId, Shape]:
     """The shape of each resource; those of one place share one. Raises `Refusal` where there is none."""
-    for fault in all_have_positions(graph.resources):
-        raise Refusal("document", fault.path, fault.rule, fault.message)
-    spot = {each.id: (each.x or 0, each.y or 0) for each in graph.resources}
+    spot = spots_of(graph)
     place = _places(graph, spot)
     beside: dict[ResourceId, dict[ResourceId, None]] = {each: {} for each in place.values()}
     for one, two in graph.edges:
@@ -49,6 +47,13 @@ def shapes(graph: ResourceGraph) -> Mapping[ResourceId, Shape]:
     points = [each for each in beside if each not in lanes]
     made |= {each: _point(spot[each], [_way(made[lane]) for lane in beside[each]]) for each in points}
     return {each: made[place[each]] for each in spot}
+
+
+def spots_of(graph: ResourceGraph) -> Mapping[ResourceId, Spot]:
+    """The position of each resource; raises `Refusal` for one without."""
+    for fault in all_have_positions(graph.resources):
+        raise Refusal("document", fault.path, fault.rule, fault.message)
+    return {each.id: (each.x or 0, each.y or 0) for each in graph.resources}
 
 
 def _places(graph: ResourceGraph, spot: Mapping[ResourceId, Spot]) -> dict[ResourceId, ResourceId]:
