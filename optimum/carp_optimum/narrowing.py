@@ -145,7 +145,7 @@ class _Formula:
         with closing(Solver(encoding.formula, self.look, glucose=True)) as solver:
             while (answer := solver.satisfiable([], CONFLICTS)) is not False:
                 if answer:
-                    self.plans = [plan for plan in encoding.plans(solver.model()) if plan is not None]
+                    self.plans = encoding.plans(solver.model())
                     self.least = total_cost(encoding.instance, self.plans)
                     self.priced.require_less(self.least)
                 yield solver.work

@@ -33,7 +33,7 @@ def cheapest(instance: Instance, bound: PricedBound, cost: int) -> int | None:
     try:
         if not solver.satisfiable([]):
             return None
-        plans = [plan for plan in encoding.plans(solver.model()) if plan is not None]
+        plans = encoding.plans(solver.model())
     finally:
         solver.close()
     verdict = judge(instance, solution_of(plans))

@@ -87,7 +87,7 @@ def faults_of_plans(instance: Instance, draw: Draw, least: int | None) -> Iterat
         if model is None:
             yield f"the formula of at most {least} has no model"
         else:
-            plans = [plan for plan in reach.plans(model) if plan is not None]
+            plans = reach.plans(model)
             yield from faults_of_solution(instance, solution_of(plans), least)
 
 

@@ -8,7 +8,7 @@ independence detection of Standley 2010.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import count
+from itertools import combinations, count
 
 from carp_optimum.sat.core_guided import core_guided
 from carp_optimum.sat.proving import short_refutation
@@ -75,14 +75,13 @@ def _total(shortest: dict[RobotId, int | None], groups: Sequence[Group]) -> int:
 
 def _meeting(instance: Instance, groups: Sequence[Group]) -> tuple[Group, Group] | None:
     """Two groups whose plans conflict, if they are not too large together: the smallest such pair."""
-    pairs = [
-        (len(one.robots) + len(other.robots), position, one, other)
-        for position, one in enumerate(groups)
-        for other in groups[position + 1 :]
-        if len(one.robots) + len(other.robots) <= LARGEST_GROUP
-    ]
-    for _, _, one, other in sorted(pairs, key=lambda pair: pair[:2]):
-        if one.plans and other.plans and violations_of(instance, (*one.plans, *other.plans)):
+
+    def size(pair: tuple[Group, Group]) -> int:
+        return sum(len(each.robots) for each in pair)
+
+    for one, other in sorted(combinations(groups, 2), key=size):
+        is_small = size((one, other)) <= LARGEST_GROUP
+        if is_small and one.plans and other.plans and violations_of(instance, (*one.plans, *other.plans)):
             return one, other
     return None
 

@@ -160,7 +160,7 @@ class CoreGuided:
                     return self.optimal(self.known.plans)
                 answer = self.solver.satisfiable(assumptions, CONFLICTS_BETWEEN_RESULTS)
             if answer:
-                plans = [plan for plan in self.encoding.plans(self.solver.model()) if plan is not None]
+                plans = self.encoding.plans(self.solver.model())
                 conflicts = violated(self.instance, plans)
                 if not conflicts:
                     return self.optimal(plans)

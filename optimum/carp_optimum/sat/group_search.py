@@ -125,7 +125,7 @@ class _GroupSearch:
         ]
         improves = False
         while self.delays and self.solver.satisfiable([*fixed, -self.total[self.delays - 1]], CONFLICTS):
-            self.take([plan for plan in self.encoding.plans(self.solver.model()) if plan is not None])
+            self.take(self.encoding.plans(self.solver.model()))
             improves = True
         return improves
 

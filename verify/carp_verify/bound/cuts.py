@@ -44,13 +44,6 @@ def formula_of(instance: Instance, cut: CutDocument, most: int) -> Formula:
     return beat_formula(group, cut.least, Evidence(cut.horizons, cut.order), most).formula
 
 
-def require_cut(instance: Instance, cut: CutDocument, most: int) -> int:
-    """Check a cut's refutation, and return how many clauses its formula has; raises as `formula_of` does."""
-    formula = formula_of(instance, cut, most)
-    require_refutation(formula.clauses, cut.refutation)
-    return len(formula.clauses)
-
-
 def formula_of_deadlines(instance: Instance, deadlines: DeadlinesDocument, most: int) -> Formula:
     """The formula that shows deadlines which cannot all be kept; raises as `formula_of` does."""
     group = group_of(instance, tuple(dict.fromkeys(deadlines.robots)))
@@ -101,8 +94,11 @@ def _formula_of_seen(group: Instance, deadlines: DeadlinesDocument, most: int) -
     return encoding.formula
 
 
-def require_deadlines(instance: Instance, deadlines: DeadlinesDocument, most: int) -> int:
+def require_refuted(instance: Instance, group: CutDocument | DeadlinesDocument, most: int) -> int:
     """Check the refutation, and return how many clauses the formula has; raises as `formula_of` does."""
-    formula = formula_of_deadlines(instance, deadlines, most)
-    require_refutation(formula.clauses, deadlines.refutation)
+    if isinstance(group, CutDocument):
+        formula = formula_of(instance, group, most)
+    else:
+        formula = formula_of_deadlines(instance, group, most)
+    require_refutation(formula.clauses, group.refutation)
     return len(formula.clauses)

@@ -147,14 +147,12 @@ def _worth(instance: Instance, certificate: BoundDocument, clauses: int) -> int:
 
 def _clauses_of(instance: Instance, group: CutDocument | DeadlinesDocument, most: int, path: str) -> int:
     """The number of clauses in the formula of a cut, or of deadlines; raises `Refusal` if its refutation fails."""
-    from carp_verify.bound.cuts import require_cut, require_deadlines  # noqa: PLC0415 - only they need the encoder
+    from carp_verify.bound.cuts import require_refuted  # noqa: PLC0415 - only they need the encoder
     from carp_verify.optimum.refutation import NotRefutedError  # noqa: PLC0415
 
     rule = is_weight if isinstance(group, CutDocument) else is_deadline
     try:
-        if isinstance(group, CutDocument):
-            return require_cut(instance, group, most)
-        return require_deadlines(instance, group, most)
+        return require_refuted(instance, group, most)
     except NotRefutedError as error:
         raise Refusal("document", path, rule.id, f"its proof does not hold: {error}") from error
     except Refusal as refusal:

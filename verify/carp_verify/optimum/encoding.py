@@ -183,9 +183,9 @@ class Encoding:
         for robot in self.robots:
             self.formula.add(-robot.late[robot.horizon])
 
-    def plans(self, model: Sequence[bool]) -> list[Plan | None]:
-        """The plans in a model, which is the truth of each variable; `None` for a robot later than its horizon."""
-        return [robot.plan(model) for robot in self.robots]
+    def plans(self, model: Sequence[bool]) -> list[Plan]:
+        """The plans in a model, which is the truth of each variable, of all robots no later than their horizons."""
+        return [plan for robot in self.robots if (plan := robot.plan(model)) is not None]
 
 
 def reach_formula(instance: Instance, cost: int, evidence: Evidence, most: int = LARGEST_PROOF) -> Encoding:

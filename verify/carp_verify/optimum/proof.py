@@ -157,19 +157,14 @@ def verify_proof(proof: Path | ProofFiles, instance: Instance | None = None) -> 
     proved = read_instance(read.contents["instance.json"])
     if asked not in (None, write_instance(proved)):
         raise ProofError("instance.json", "it is another instance than the one given")
-    if not isinstance(read.manifest, UnsolvableManifest) or isinstance(read.manifest.obstacle, Clauses):
-        _require_table(proved)
+    size = len(proved.robots) * len(proved.graph.resources)
+    is_made = not isinstance(read.manifest, UnsolvableManifest) or isinstance(read.manifest.obstacle, Clauses)
+    if is_made and size > LARGEST_TABLE:
+        reason = f"its pairs of a robot and a resource are {size}, and at most {LARGEST_TABLE} are allowed"
+        raise ProofError("instance.json", reason)
     if isinstance(read.manifest, UnsolvableManifest):
         return _verify_obstacle(proved, read.manifest.obstacle, read.contents)
     return _verify_optimum(proved, read.manifest, read.contents)
-
-
-def _require_table(instance: Instance) -> None:
-    """Refuse an instance whose robots would be searched for in too many resources."""
-    size = len(instance.robots) * len(instance.graph.resources)
-    if size > LARGEST_TABLE:
-        reason = f"its pairs of a robot and a resource are {size}, and at most {LARGEST_TABLE} are allowed"
-        raise ProofError("instance.json", reason)
 
 
 def _verify_obstacle(instance: Instance, obstacle: Obstacle, files: Mapping[str, bytes]) -> Verified:
@@ -279,8 +274,7 @@ def _solution(instance: Instance, encoding: Encoding, cost: int, text: bytes) ->
     for number, clause in enumerate(formula.clauses, start=1):
         if true.isdisjoint(clause):
             raise ProofError("reach.model", f"it breaks clause {number} of reach.cnf")
-    plans = encoding.plans([variable in true for variable in range(formula.variables + 1)])
-    solution = solution_of([plan for plan in plans if plan is not None])
+    solution = solution_of(encoding.plans([variable in true for variable in range(formula.variables + 1)]))
     verdict = judge(instance, solution)
     if verdict.violations:
         raise ProofError("reach.model", f"its plans break a rule: {verdict.violations[0]}")
