@@ -31,8 +31,8 @@ from carp_optimum.lagrangian.price_steps import (
     turn_all,
     walk_all,
 )
-from carp_optimum.lagrangian.priced_paths import begin_ways, find_rests, find_ways, least_cost, see_ways
-from carp_optimum.lagrangian.state import Cells
+from carp_optimum.lagrangian.priced_paths import find_rests, find_ways, see_ways
+from carp_optimum.lagrangian.state import Cells, add_up
 from carp_optimum.lagrangian.usage import count_ways
 from carp_spec import Instance, Refusal, ResourceId, RobotId
 from carp_spec.documents.bounds import DeadlinesDocument
@@ -137,7 +137,7 @@ class PriceSearch:
         began = self._clock()
         worth = int((self.fees * (self._flat.sizes - 1)).sum())
         self._charge()
-        total = -worth - begin_ways(self.native)
+        total = -worth - add_up(self.native)
         robots = len(self.instance.robots)
         for first in range(0, robots, PART):
             check()
@@ -364,7 +364,7 @@ class PriceSearch:
         for position, (_, sure) in enumerate(shortest):
             if sure is not None:
                 steps[0] = 0
-                claims.append((position, least_cost(self.native, position), int(steps[0])))
+                claims.append((position, find_ways(self.native, position, position + 1), int(steps[0])))
         costs = dict(shortest)
         ids = [robot for robot, _ in shortest]
         left = MOST_STEPS

@@ -46,7 +46,9 @@ def turn(market: Market, cells: Cells, is_exchange: bool) -> int:
             surplus = surplus_of_exchange(market, number, tick)
         else:
             surplus = int(market.usage.present[number][tick]) - int(graph.room[number])
-        after = turned(int(cells.course[row][tick]), surplus, price)
+        after = int(cells.course[row][tick]) * KEPT // PARTS + UNIT * max(min(surplus, MOST_SURPLUS), -MOST_SURPLUS)
+        if after < 0 and price == 0:  # no price falls below 0
+            after = 0
         cells.course[row][tick] = after
         if takes_less(market, is_exchange, number):
             less += after * after
@@ -67,13 +69,6 @@ def takes_less(market: Market, is_exchange: bool, number: int) -> bool:
     return is_exchange or number >= market.graph.duration.size
 
 
-@compiled
-def turned(course: int, surplus: int, price: int) -> int:
-    """The course of a row; one whose price is 0 does not fall."""
-    after = course * KEPT // PARTS + UNIT * max(min(surplus, MOST_SURPLUS), -MOST_SURPLUS)
-    return 0 if after < 0 and price == 0 else after
-
-
 @entry
 def walk_all(native: Native[Market], gain: int, square: int) -> None:
     """Change all prices along their course, of that square together with whatever else is changed, to gain so much."""
@@ -90,15 +85,11 @@ def walk(market: Market, cells: Cells, is_exchange: bool, gain: int, square: int
         number, tick = cell // market.horizon, cell % market.horizon
         row = int(cells.row[number])
         less = LESS if takes_less(market, is_exchange, number) else 1
-        more = change(int(cells.price[row][tick]), int(cells.course[row][tick]), gain, square * less)
+        price = int(cells.price[row][tick])
+        after = price + gain * UNIT * int(cells.course[row][tick]) // (square * less)
+        more = min(max(after, 0), LARGEST_PRICE) - price
         if more != 0:
             change_price(market, is_exchange, number, tick, more)
-
-
-@compiled
-def change(price: int, course: int, gain: int, square: int) -> int:
-    """How much a price rises along its course."""
-    return min(max(price + gain * UNIT * course // square, 0), LARGEST_PRICE) - price
 
 
 @entry

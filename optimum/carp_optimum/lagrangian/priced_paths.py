@@ -15,7 +15,6 @@ from carp_optimized.state.arrays import NONE
 from carp_optimum.lagrangian.state import (
     Market,
     Scratch,
-    add_up,
     duration_of,
     further_price,
     goal_price,
@@ -89,26 +88,14 @@ def wait_for_rest(market: Market, size: int, ticks: int, here: int) -> int:
 
 
 @entry
-def begin_ways(native: Native[Market]) -> int:
-    """Add up the prices, before `find_ways`: the prices times the capacities."""
-    return add_up(market_at(native))
-
-
-@entry
 def find_ways(native: Native[Market], begin: int, end: int) -> int:
-    """Give the robots from one on up to another a cheapest way: the sum of their least priced costs."""
+    """Give the robots from one on up to another a cheapest way: the sum of their least priced costs, after `add_up`."""
     market = market_at(native)
     total = 0
     for robot in range(begin, end):
         if market.requests.earliest[robot] != NONE:
             total += find_way(market, robot)
     return total
-
-
-@entry
-def least_cost(native: Native[Market], robot: int) -> int:
-    """The least priced cost of a robot, once the prices have been added up."""
-    return find_way(market_at(native), robot)
 
 
 @compiled

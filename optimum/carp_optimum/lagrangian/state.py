@@ -7,9 +7,9 @@ moves from r to s or from s to r, or is in r just before t and at t (`joint/exch
 
 from typing import NamedTuple
 
-from carp_optimized.jit.compiling import compiled
+from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints, IntTable, Longs, LongTable, ShortTable
-from carp_optimized.jit.references import dereference
+from carp_optimized.jit.references import Native, dereference
 from carp_optimized.state.arrays import NONE, Graph
 
 
@@ -262,9 +262,10 @@ def change_waiting(market: Market, row: int, tick: int, more: int) -> None:
     market.prices.changed[row] = min(int(market.prices.changed[row]), tick)
 
 
-@compiled
-def add_up(market: Market) -> int:
+@entry
+def add_up(native: Native[Market]) -> int:
     """Bring the sums of the prices up to date: the sum of all prices times their capacities."""
+    market = market_at(native)
     prices = market.prices
     for row in range(prices.changed.size):
         if prices.changed[row] < market.horizon:
