@@ -6,7 +6,7 @@ from itertools import accumulate, chain
 from operator import itemgetter
 from typing import TypeAlias
 
-from carp_spec import Instance, ResourceGraph, ResourceId, RobotId
+from carp_spec import Instance, ResourceId, RobotId
 from carp_spec.documents.bounds import BoundDocument, DeadlinesDocument
 from carp_verify.bound.rules import LARGEST_TABLE, is_new, is_price, require, require_size
 
@@ -83,7 +83,7 @@ class Tariff:
         pairs: Iterator[Row] = (((one, other), tick, price) for one, other, tick, price in certificate.exchanges)
         for place, tick, price in chain(
             _checked("resources", alone, horizon, lambda place: place[0] in graph.index, either),
-            _checked("exchanges", pairs, horizon, lambda place: is_both_ways(graph, *place), either),
+            _checked("exchanges", pairs, horizon, lambda place: {place, place[::-1]} <= graph.moves, either),
         ):
             source = place[0]
             self.horizon = max(self.horizon, tick + 1)
@@ -142,8 +142,3 @@ def _checked(
         require(is_new, is_new((place, tick), known), path, f"{shown} must have one price at tick {tick}")
         known.add((place, tick))
         yield place, tick, price
-
-
-def is_both_ways(graph: ResourceGraph, source: ResourceId, target: ResourceId) -> bool:
-    """Whether moves lead from one to the other and back."""
-    return {(source, target), (target, source)} <= graph.moves

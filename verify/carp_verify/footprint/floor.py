@@ -45,7 +45,7 @@ def shapes(graph: ResourceGraph) -> Mapping[ResourceId, Shape]:
         raise Refusal("document", fault.path, fault.rule, fault.message)
     made = {each: _lane(*(spot[end] for end in beside[each])) for each in lanes}
     points = [each for each in beside if each not in lanes]
-    made |= {each: _point(spot[each], [_way(made[lane]) for lane in beside[each]]) for each in points}
+    made |= {each: _point(spot[each], [made[lane].heading or (0, 0) for lane in beside[each]]) for each in points}
     return {each: made[place[each]] for each in spot}
 
 
@@ -93,10 +93,6 @@ def _is_in_the_middle(spot: Spot, ends: list[Spot]) -> bool:
 
 def _lane(start: Spot, end: Spot) -> Shape:
     return Shape(start, end, (end[0] - start[0], end[1] - start[1]))
-
-
-def _way(lane: Shape) -> Spot:
-    return lane.heading or (0, 0)
 
 
 def _point(spot: Spot, ways: list[Spot]) -> Shape:

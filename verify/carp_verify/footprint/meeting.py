@@ -23,14 +23,10 @@ def overlap(one: Shape, two: Shape, size: Footprint) -> bool:
 
 def _are_nearer(one: Shape, two: Shape, distance: int) -> bool:
     """Whether the middles of two discs may come nearer than the distance."""
-    if _cross_inside(one, two):
+    if _parts(one, two) and _parts(two, one):
         return True
     ends = [(end, two) for end in (one.start, one.end)] + [(end, one) for end in (two.start, two.end)]
     return any(_is_nearer(spot, shape, distance) for spot, shape in ends)
-
-
-def _cross_inside(one: Shape, two: Shape) -> bool:
-    return _parts(one, two) and _parts(two, one)
 
 
 def _parts(line: Shape, other: Shape) -> bool:

@@ -109,9 +109,7 @@ class _Search:
 
     def following(self, tick: int, before: Joint) -> Iterator[Joint]:
         """The joint states at the tick after one at the tick before."""
-        choices = [
-            list(self.at(*each)) for each in zip(self.instance.robots, [tick] * len(before), before, strict=True)
-        ]
+        choices = [list(self.at(robot, tick, state)) for robot, state in zip(self.instance.robots, before, strict=True)]
         for after in product(*choices):
             if self.is_allowed(before, after):
                 yield after
