@@ -20,10 +20,8 @@ from carp_optimum.lagrangian.price_search import PriceSearch
 from carp_optimum.sat.proving import short_refutation
 from carp_optimum.sat.solver import Solver
 from carp_spec import Instance
-from carp_verify.bound.cuts import formula_of_deadlines
 from carp_verify.optimum.clauses import Literal
 from carp_verify.optimum.encoding import Encoding, violated
-from carp_verify.optimum.rules import LARGEST_FORMULA
 
 STEPS = 120
 SHARES = (0, 12, 24, 36, 48, 60, 80)
@@ -104,10 +102,7 @@ class DeadlineSearch:
         self.known.add(key)
         earliest = self.search.market.requests.earliest
         members = [Member(position, int(earliest[position]) + delay, 0, ()) for position, delay in allowed.items()]
-        document = Deadlines(members).document(self.instance)
-        lines = short_refutation(
-            lambda: formula_of_deadlines(self.instance, document, LARGEST_FORMULA), check, LONGEST_REFUTATION
-        )
+        lines = short_refutation(lambda: Deadlines(members).formula(self.instance), check, LONGEST_REFUTATION)
         return Deadlines(members, lines) if lines else None
 
 

@@ -17,9 +17,7 @@ from carp_optimum.claims.pair_constraints import Sides
 from carp_optimum.lagrangian.deadlines import Deadlines, Member
 from carp_optimum.lagrangian.price_search import PriceSearch
 from carp_optimum.sat.proving import short_refutation
-from carp_verify.bound.cuts import formula_of_deadlines
 from carp_verify.bound.rules import ContradictionError
-from carp_verify.optimum.rules import LARGEST_FORMULA
 
 STEPS = 120
 PERIOD = 200  # steps; ways of the last `STEPS` among them are looked at
@@ -141,11 +139,8 @@ class SightSearch:
 
     def _refutation(self, claim: Deadlines, check: Callable[[], None]) -> str:
         """The refutation of the claim's contrary, or nothing if it is too long."""
-        document = claim.document(self.instance)
         try:
-            return short_refutation(
-                lambda: formula_of_deadlines(self.instance, document, LARGEST_FORMULA), check, LONGEST_REFUTATION
-            )
+            return short_refutation(lambda: claim.formula(self.instance), check, LONGEST_REFUTATION)
         except ContradictionError:
             check()
             return ""

@@ -10,6 +10,9 @@ import numpy.typing as npt
 from carp_optimized.jit.kinds import Longs
 from carp_spec import Instance
 from carp_spec.documents.bounds import DeadlinesDocument
+from carp_verify.bound.cuts import formula_of_deadlines
+from carp_verify.optimum.clauses import Formula
+from carp_verify.optimum.rules import LARGEST_FORMULA
 
 
 class Member(NamedTuple):
@@ -39,6 +42,10 @@ class Deadlines:
         ticks = tuple(max(each.arrival, 0) for each in self.members)
         seen = tuple((each.seen, tuple(resources[at].id for at in each.places)) for each in self.members if each.seen)
         return DeadlinesDocument(robots, ticks, price, self.refutation, seen)
+
+    def formula(self, instance: Instance) -> Formula:
+        """The formula that shows them when it is refuted; raises `Refusal` if it would be too large."""
+        return formula_of_deadlines(instance, self.document(instance), LARGEST_FORMULA)
 
 
 class Flat(NamedTuple):
