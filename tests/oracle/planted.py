@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from msgspec import structs
 
 from carp_spec import Carp, Instance, Plan, Resource, Robot, Solution, Visit
-from carproof.conform.answers import Answer, Reply
+from carproof.conform.answers import Answer, Reply, Subject
 from carproof.conform.cases import Case, request_of
 from carproof.conform.judging.claims import EVERYTHING, Claims
 from carproof.conform.levels import Level
@@ -41,24 +41,18 @@ class Bug:
     claims: Claims = EVERYTHING
 
 
-class Planted:
+class Planted(Subject):
     """A planner that is right but for a bug."""
 
     name = "planted"
 
     def __init__(self, bug: Bug) -> None:
         self.bug = bug
-        self.ops: tuple[str, ...] = (bug.op,)
-
-    def start(self) -> None: ...
+        self.ops = (bug.op,)
 
     def ask(self, case: Case, seconds: float | None = None) -> Reply:
         del seconds
         return self.bug.answer(case) or rightly(case)
-
-    def finish(self) -> None: ...
-
-    def kill(self) -> None: ...
 
 
 def alone(case: Case) -> Solution:

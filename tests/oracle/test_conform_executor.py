@@ -24,7 +24,6 @@ from carproof.conform.judging.claims import Claims
 from carproof.conform.judging.driving import execution, execution_findings
 from carproof.conform.levels import Level
 from carproof.conform.programs.child import Limits
-from carproof.conform.programs.executor import Executor
 from carproof.conform.programs.program import Program
 from carproof.conform.reporting.saved import read_saved, save_all
 from carproof.conform.reporting.saving import Origin
@@ -62,7 +61,7 @@ class Called(Program):
 
 
 def run(program: Program, level: Level = Level.SOUND, examples: int = 200) -> Report:
-    return conform(Executor(program), Options(level, examples, seed=5, shrink_seconds=60, executor=True))
+    return conform(program, Options(level, examples, seed=5, shrink_seconds=60, executor=True))
 
 
 def smallest(report: Report) -> tuple[str, Case]:

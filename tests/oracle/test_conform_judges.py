@@ -12,7 +12,7 @@ from msgspec import structs
 import carp_reference
 from carp_spec import Plan, Solution
 from carp_spec.documents.vectors import VectorsDocument
-from carproof.conform.answers import Reply
+from carproof.conform.answers import Reply, Subject
 from carproof.conform.cases import ASKED_OPS, Case, request_fields, request_of
 from carproof.conform.levels import Level
 from carproof.conform.reporting.saving import save
@@ -31,7 +31,7 @@ def right_reply(case: Case) -> Reply:
     return reply
 
 
-class Tampered:
+class Tampered(Subject):
     """A subject whose right answers go through a function."""
 
     def __init__(self, tamper: Tamper, ops: tuple[str, ...] = ASKED_OPS) -> None:
@@ -41,17 +41,11 @@ class Tampered:
         self.cases: list[Case] = []
         self.asked: Counter[str] = Counter()
 
-    def start(self) -> None: ...
-
     def ask(self, case: Case, seconds: float | None = None) -> Reply:
         del seconds
         self.asked[case.op] += 1
         self.cases.append(case)
         return self.tamper(case, right_reply(case))
-
-    def finish(self) -> None: ...
-
-    def kill(self) -> None: ...
 
 
 def run(tamper: Tamper, level: Level, ops: tuple[str, ...] = ASKED_OPS, examples: int = 40) -> Report:

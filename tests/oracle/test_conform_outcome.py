@@ -8,14 +8,14 @@ from tests.oracle.test_conform_judges import Tampered, as_it_is
 from tests.oracle.test_conform_one_answer import BEST, OPTIMUM, PLAN, QUERY, UNDECIDED, goes
 
 from carp_spec import Instance, Solution
-from carproof.conform.answers import NotAsked, Reply, Skipped
+from carproof.conform.answers import Reply, Skipped
 from carproof.conform.asking.smoke import EAST, FIRST_GOES, committed, row
 from carproof.conform.cases import Case
 from carproof.conform.findings import Category, Fault, Finding, wrong
 from carproof.conform.judging.gave_up import Effort
 from carproof.conform.judging.outcome import Outcome, ask
 from carproof.conform.levels import Level
-from carproof.conform.programs.function import Function, by_documents
+from carproof.conform.programs.function import Function
 from carproof.protocol.ops.planning import QueryDocument
 
 CRASH = Finding(Category.CRASH, "program/alive", "it is gone")
@@ -50,7 +50,7 @@ def without_seconds(found: Outcome) -> tuple[Any, ...]:
         (QUERY, Fault(CRASH), COMPLETE, (CRASH, None, None, True, None, True)),
         (QUERY, Skipped("no time"), COMPLETE, (None, None, "no time", True, None, False)),
         (QUERY, Skipped(""), COMPLETE, (None, None, "", True, None, False)),
-        (QUERY, NotAsked("no words"), COMPLETE, (None, None, "no words", False, None, False)),
+        (QUERY, Skipped("no words", asked=False), COMPLETE, (None, None, "no words", False, None, False)),
         (QUERY, GOES, COMPLETE, (None, GOES, None, True, Effort.TRIED, True)),
         (QUERY, NOBODY, Level.SOUND, (None, NOBODY, None, True, Effort.GAVE_UP, True)),
         (OPTIMUM, BEST, OPTIMAL, (None, BEST, None, True, Effort.TRIED, True)),
@@ -85,9 +85,9 @@ ALONE = Case("smoke", "one", "plan", row([EAST]))
 PLANNED = committed(row([EAST]), new=FIRST_GOES)
 
 
-def fault_of(planner: Any) -> Finding:  # noqa: ANN401 - anything that a person may pass
+def fault_of(planner: Any, documents: bool = False) -> Finding:  # noqa: ANN401 - anything that a person may pass
     with pytest.raises(Fault) as fault:
-        Function(planner, "mine").ask(ALONE)
+        Function(planner, "mine", documents).ask(ALONE)
     return fault.value.finding
 
 
@@ -95,11 +95,15 @@ def test_a_planner_of_documents_is_one_of_models() -> None:
     written = {"format": "carproof-solution/1", "order": ["new"], "unplanned": []}
     plans = [{"robot": "new", "visits": [list(stay) for stay in FIRST_GOES]}]
     seen: list[dict[str, Any]] = []
-    planner = by_documents(lambda document: (seen.append(document), {**written, "plans": plans})[1])  # type: ignore[func-returns-value]
-    assert Function(planner, "mine").ask(ALONE) == PLANNED
+
+    def planner(document: dict[str, Any]) -> dict[str, Any]:
+        seen.append(document)
+        return {**written, "plans": plans}
+
+    assert Function(planner, "mine", documents=True).ask(ALONE) == PLANNED
     assert [each["id"] for each in seen[0]["robots"]] == ["new"]
     for returned, words in ((object(), "cannot be written as JSON"), ({**written, "plans": 1}, "the result of plan")):
-        finding = fault_of(by_documents(lambda _, returned=returned: returned))  # type: ignore[misc]
+        finding = fault_of(lambda _, returned=returned: returned, documents=True)
         assert finding.rule == "program/result"
         assert words in finding.message
 
@@ -109,7 +113,7 @@ def test_a_function_is_asked_for_plans_by_a_planner_of_its_own_alone() -> None:
     function = Function(lambda instance: (asked.append(instance), PLANNED)[1], "mine")  # type: ignore[func-returns-value]
     assert (function.name, function.ops) == ("mine", ("plan",))
     for other in (QUERY, PLAN, OPTIMUM):
-        assert function.ask(other) == NotAsked("it plans whole instances, by a planner of its own")
+        assert function.ask(other) == Skipped("it plans whole instances, by a planner of its own", asked=False)
     assert asked == []
     assert function.ask(ALONE) == PLANNED
     assert (asked, asked[0] is ALONE.instance) == ([ALONE.instance], False)

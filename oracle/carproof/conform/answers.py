@@ -10,6 +10,7 @@ from carp_spec.documents.bounds import BoundDocument
 from carp_spec.documents.decoding import UNREADABLE, is_json, uncapitalized
 from carp_spec.documents.verdicts import VerdictDocument
 from carp_spec.execution.traces import Trace
+from carproof.conform.cases import Case
 from carproof.conform.findings import RIGHT_RESULT, Category, Fault, Finding, is_accepted, is_response
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops import OPS
@@ -21,20 +22,34 @@ MOST_SHOWN = 200
 
 @dataclass(frozen=True, slots=True)
 class Skipped:
-    """The program does not offer the op that was asked."""
+    """There is no answer: the program does not offer one, or it cannot even be `asked`, for want of words."""
 
     why: str
-
-
-@dataclass(frozen=True, slots=True)
-class NotAsked:
-    """The program cannot be asked this: its input format cannot express it."""
-
-    why: str
+    asked: bool = True
 
 
 Answer: TypeAlias = QueryDocument | Solution | VerdictDocument | OptimumDocument | BoundDocument | Trace
-Reply: TypeAlias = Answer | Skipped | NotAsked
+Reply: TypeAlias = Answer | Skipped
+
+
+class Subject:
+    """A subject that answers cases, with its name in reports and the ops that it offers."""
+
+    name = ""
+    ops: tuple[str, ...] = ()
+
+    def start(self) -> None:
+        """Get ready; raises `Fault` if that fails."""
+
+    def ask(self, case: Case, seconds: float | None = None) -> Reply:
+        """Its reply, within this many seconds (`None`: the usual limit); raises `Fault` without a reply to judge."""
+        raise NotImplementedError
+
+    def finish(self) -> None:
+        """End; raises `Fault` if that fails."""
+
+    def kill(self) -> None:
+        """Leave nothing behind."""
 
 
 class _Response(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -13,7 +13,7 @@ from carproof.protocol.ops.op import PolishOptions
 ASKED_OPS = ("check", "query", "plan", "add", "polish", "optimum", "bound")
 """The ops of the table that programs are asked."""
 EXECUTION = "execute"
-"""The op of an execution, through which `Executor` leads a program by many requests `drive`."""
+"""The op of an execution, through which an executor is led by many requests `drive`."""
 Stage: TypeAlias = Literal["saved", "smoke", "vectors", "random", "large"]
 OPTIMUM_SECONDS = 60
 """A search for the optimum of a small case takes less, also on a machine that is busy."""

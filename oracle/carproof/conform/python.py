@@ -1,14 +1,14 @@
 """Python functions that plan, judged: for tests and scripts."""
 
 from collections.abc import Callable, Collection, Sequence
-from typing import Any, Literal, TypeAlias, cast
+from typing import Any, Literal, TypeAlias
 
 from carp_spec import Instance, Refusal, Solution
 from carproof.conform.cases import Case
 from carproof.conform.findings import RIGHT_QUESTIONS
 from carproof.conform.judging.claims import FEATURES, Claims
 from carproof.conform.levels import EXAMPLES, LARGE_SECONDS, LEVELS, WHOLE_LEVELS
-from carproof.conform.programs.function import Function, by_documents
+from carproof.conform.programs.function import Function
 from carproof.conform.run import Options, Report, conform
 from carproof.extras import require
 
@@ -42,10 +42,9 @@ def conforms(  # noqa: PLR0913 - the options of the command
     _require_known("level", [level], [each.label for each in WHOLE_LEVELS])
     _require_known("without", without, [*FEATURES])
     name = getattr(planner, "__name__", type(planner).__name__)
-    called = by_documents(cast("Any", planner)) if documents else planner
     claims = Claims(frozenset(without), solvable, groups, stops)
     options = Options(LEVELS[level], examples, seed, whole=True, claims=claims, large=large)
-    return conform(Function(cast("Callable[[Instance], Solution]", called), name), options, saved=saved)
+    return conform(Function(planner, name, documents), options, saved=saved)
 
 
 def _require_known(option: str, given: Collection[str], known: Sequence[str]) -> None:

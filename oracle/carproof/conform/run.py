@@ -5,15 +5,16 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from time import monotonic
 
+from carproof.conform.answers import Subject, protocol_error
 from carproof.conform.asking.ladder import SIZES, Rung, large_case, rungs
 from carproof.conform.asking.smoke import smoke_cases
 from carproof.conform.asking.vector_cases import vector_cases
 from carproof.conform.cases import EXECUTION, Case
-from carproof.conform.findings import Category, Fault, Finding
+from carproof.conform.findings import Category, Fault, Finding, answers_enough
 from carproof.conform.judging.claims import EVERYTHING, Claims
 from carproof.conform.judging.deciding import Extent, Tally, random_shortfalls, smoke_shortfalls
 from carproof.conform.judging.gave_up import Effort
-from carproof.conform.judging.outcome import Outcome, Subject, ask
+from carproof.conform.judging.outcome import Outcome, ask
 from carproof.conform.levels import EXAMPLES, EXECUTOR_LEVELS, JUDGED_OPS, Level
 from carproof.conform.shrinking import SHRINK_SECONDS, FailureSearch
 
@@ -213,8 +214,11 @@ def conform(
 def _ask_everything(subject: Subject, report: Report, advance: Callable[[], None], saved: Sequence[Case]) -> None:
     options = report.options
     subject.start()
-    _ask_fixed(subject, report, (case for case in saved if case.op in subject.ops), advance)
-    asked = (subject.ops, options.level, options.whole)
+    if options.executor and "drive" not in subject.ops:
+        raise protocol_error(answers_enough.id, "the answer to start of an executor must name drive")
+    ops = options.ops if options.executor else subject.ops
+    _ask_fixed(subject, report, (case for case in saved if case.op in ops), advance)
+    asked = (ops, options.level, options.whole)
     _ask_fixed(subject, report, smoke_cases(*asked, options.claims.groups), advance)
     _ask_fixed(subject, report, vector_cases(*asked, options.claims), advance)
     _ask_random(subject, report, advance)

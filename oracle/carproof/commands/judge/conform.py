@@ -35,7 +35,6 @@ from carproof.progress import progress
 from carproof.protocol.ops.published import op_list
 
 if TYPE_CHECKING:
-    from carproof.conform.judging.outcome import Subject
     from carproof.conform.programs.child import Limits
     from carproof.conform.programs.one_shot import OneShot
     from carproof.conform.reporting.saving import Origin
@@ -177,7 +176,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     command prints its findings so far.
     """
     from carproof.conform.programs.child import Limits  # noqa: PLC0415 - what runs processes is loaded when it is needed
-    from carproof.conform.programs.executor import Executor  # noqa: PLC0415
     from carproof.conform.programs.one_shot import OneShot  # noqa: PLC0415
     from carproof.conform.programs.program import Program  # noqa: PLC0415
     from carproof.conform.reporting.documents import junit_document, report_document  # noqa: PLC0415
@@ -192,8 +190,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     if shutil.which(program[0]) is None:
         raise click.UsageError(f"{program[0]}: there is no such program, or it may not be run.")
     limits = Limits(timeout, memory)
-    process = Program(program, limits, seed)
-    subject: Subject = _one_shot(program, limits, format) if one_shot else Executor(process) if executor else process
+    subject = _one_shot(program, limits, format) if one_shot else Program(program, limits, seed)
     classical = isinstance(subject, OneShot) and subject.is_classical
     _require_level(LEVELS[level], one_shot, classical, executor, kernel)
     if (groups or stops) and classical:

@@ -1,11 +1,10 @@
-"""Subjects, which answer cases, and the outcome of one case."""
+"""The outcome of one case that a subject was asked."""
 
 from dataclasses import dataclass
 from time import monotonic
-from typing import Protocol
 
 from carp_spec import Refusal
-from carproof.conform.answers import Answer, NotAsked, Reply, Skipped
+from carproof.conform.answers import Answer, Skipped, Subject
 from carproof.conform.cases import Case, is_large
 from carproof.conform.findings import Fault, Finding
 from carproof.conform.judging.by_kernel import require_agreement
@@ -13,30 +12,6 @@ from carproof.conform.judging.claims import features
 from carproof.conform.judging.gave_up import Effort, effort, why_undecided
 from carproof.conform.judging.judges import first_finding
 from carproof.conform.levels import Level
-
-
-class Subject(Protocol):
-    """A subject that answers cases; `ops` are the ops that it offers."""
-
-    @property
-    def name(self) -> str:
-        """Its name in reports."""
-
-    @property
-    def ops(self) -> tuple[str, ...]:
-        """The ops that it offers."""
-
-    def start(self) -> None:
-        """Get ready; raises `Fault` if that fails."""
-
-    def ask(self, case: Case, seconds: float | None = None) -> Reply:
-        """Its reply, within this many seconds (`None`: the usual limit); raises `Fault` without a reply to judge."""
-
-    def finish(self) -> None:
-        """End; raises `Fault` if that fails."""
-
-    def kill(self) -> None:
-        """Leave nothing behind."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,8 +53,8 @@ def ask(subject: Subject, case: Case, level: Level, seconds: float | None = None
     except Fault as fault:
         return Outcome(case, fault.finding, seconds=monotonic() - started)
     taken = monotonic() - started
-    if isinstance(reply, Skipped | NotAsked):
-        return Outcome(case, skipped=reply.why, asked=isinstance(reply, Skipped), seconds=taken)
+    if isinstance(reply, Skipped):
+        return Outcome(case, skipped=reply.why, asked=reply.asked, seconds=taken)
     try:
         finding = first_finding(case, reply, level)
         if by_kernel:

@@ -6,73 +6,47 @@ from typing import Any
 
 import msgspec
 
-from carp_spec import Instance, Solution
+from carp_spec import Solution
 from carp_spec.documents.instances import read_instance, write_instance
 from carp_spec.documents.solutions import write_solution
-from carproof.conform.answers import NotAsked, Reply, decode_solution, protocol_error
+from carproof.conform.answers import Reply, Skipped, Subject, decode_solution, protocol_error
 from carproof.conform.cases import Case
 from carproof.conform.findings import RIGHT_RESULT, Category, Fault, Finding, is_alive
 
-Document = dict[str, Any]
 
-
-def by_documents(planner: Callable[[Document], Document]) -> Callable[[Instance], Solution]:
-    """A planner of documents as one of models."""
-
-    def plan(instance: Instance) -> Solution:
-        document = planner(msgspec.json.decode(write_instance(instance)))
-        try:
-            data = msgspec.json.encode(document)
-        except (TypeError, ValueError, OverflowError) as error:
-            raise protocol_error(
-                RIGHT_RESULT.id, f"the planner's document cannot be written as JSON: {error}"
-            ) from error
-        return decode_solution(data)
-
-    return plan
-
-
-def _written(solution: Solution) -> bytes:
-    try:
-        return write_solution(solution)
-    except Exception as error:
-        raise protocol_error(RIGHT_RESULT.id, f"the planner's solution cannot be written as JSON: {error}") from error
-
-
-class Function:
-    """A planner that is called with an instance and returns a solution. Nothing limits its time.
+class Function(Subject):
+    """A planner that takes an instance and returns a solution, or their `documents`. Nothing limits its time.
 
     It gets an instance of its own, and its solution is written and read as a document. So the planner cannot change the
     objects that the judges look at.
     """
 
-    def __init__(self, planner: Callable[[Instance], Solution], name: str) -> None:
+    def __init__(self, planner: Callable[[Any], object], name: str, documents: bool = False) -> None:
         self._planner = planner
+        self._documents = documents
         self.name = name
-        self.ops: tuple[str, ...] = ("plan",)
-
-    def start(self) -> None:
-        """It is there."""
+        self.ops = ("plan",)
 
     def ask(self, case: Case, seconds: float | None = None) -> Reply:
         """Call the function."""
         del seconds
         if case.op != "plan" or case.planner is not None:
-            return NotAsked("it plans whole instances, by a planner of its own")
+            return Skipped("it plans whole instances, by a planner of its own", asked=False)
+        instance = write_instance(case.instance)
         try:
-            solution: object = self._planner(read_instance(write_instance(case.instance)))
-        except (Fault, KeyboardInterrupt):
+            planned = self._planner(msgspec.json.decode(instance) if self._documents else read_instance(instance))
+        except KeyboardInterrupt:
             raise
         except BaseException as error:  # pytest.skip and sys.exit are no way out
             message = f"it raised {type(error).__name__}: {str(error).partition(chr(10))[0]}"
             raise Fault(Finding(Category.CRASH, is_alive.id, message, traceback.format_exc())) from error
-        if not isinstance(solution, Solution):
-            message = f"a planner must return a carp_spec.Solution, not {type(solution).__name__}"
+        if not (self._documents or isinstance(planned, Solution)):
+            message = f"a planner must return a carp_spec.Solution, not {type(planned).__name__}"
             raise protocol_error(RIGHT_RESULT.id, message)
-        return decode_solution(_written(solution))
-
-    def finish(self) -> None:
-        """Nothing runs on."""
-
-    def kill(self) -> None:
-        """Nothing runs on."""
+        try:
+            written = write_solution(planned) if isinstance(planned, Solution) else msgspec.json.encode(planned)
+        except Exception as error:
+            what = "document" if self._documents else "solution"
+            message = f"the planner's {what} cannot be written as JSON: {error}"
+            raise protocol_error(RIGHT_RESULT.id, message) from error
+        return decode_solution(written)

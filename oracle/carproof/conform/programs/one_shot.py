@@ -9,7 +9,7 @@ from typing import BinaryIO
 
 from carp_spec import Instance, Refusal, Robot, Solution
 from carp_spec.documents.instances import write_instance
-from carproof.conform.answers import NotAsked, Reply, decode_solution, protocol_error, shown
+from carproof.conform.answers import Reply, Skipped, Subject, decode_solution, protocol_error, shown
 from carproof.conform.cases import Case
 from carproof.conform.findings import IN_TIME, RIGHT_RESULT, Category, Fault, Finding, is_alive
 from carproof.conform.programs.child import Limits, end_group, ending, environment, exit_code, limited, plain_file
@@ -33,7 +33,7 @@ def names(template: Sequence[str], placeholder: str) -> bool:
     return any(placeholder in part for part in template)
 
 
-class OneShot:
+class OneShot(Subject):
     """A program with a template of its command line.
 
     `{instance}` stands for the file that it reads, or `{map}` and `{scen}` for MovingAI files and `{agents}` for the
@@ -52,7 +52,7 @@ class OneShot:
         is_foreign = format not in (None, carproof_documents.ADAPTER.name)
         self.is_classical = is_foreign or names(template, MAP) or names(template, SCEN)
         self.name = template[0]
-        self.ops: tuple[str, ...] = ("plan",)
+        self.ops = ("plan",)
 
     def start(self) -> None:
         """Recognise the format that the program writes; raises `Refusal` if it must be named."""
@@ -72,9 +72,9 @@ class OneShot:
     def ask(self, case: Case, seconds: float | None = None) -> Reply:
         """Run the program on the case's instance."""
         if case.op != "plan" or case.planner is not None:
-            return NotAsked("it plans whole instances, by a planner of its own")
+            return Skipped("it plans whole instances, by a planner of its own", asked=False)
         if self.is_classical and not is_classical(case.instance):
-            return NotAsked("it plans classical grids")
+            return Skipped("it plans classical grids", asked=False)
         with _folder() as folder:
             written = self._written(case.instance, Path(folder), seconds or self._limits.seconds)
         return self._read(written, case.instance) if written else Solution((), (), tuple(case.instance.robot))
@@ -154,9 +154,3 @@ class OneShot:
         except OSError as error:
             message = f"its answer must be a plain file that can be read: {error.strerror}"
             raise Fault(Finding(Category.PROTOCOL_ERROR, RIGHT_RESULT.id, message, errors)) from error
-
-    def finish(self) -> None:
-        """Nothing runs on."""
-
-    def kill(self) -> None:
-        """Nothing runs on."""
