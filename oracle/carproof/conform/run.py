@@ -18,7 +18,6 @@ from carproof.conform.judging.outcome import Outcome, ask
 from carproof.conform.levels import EXAMPLES, EXECUTOR_LEVELS, JUDGED_OPS, Level
 from carproof.conform.shrinking import SHRINK_SECONDS, FailureSearch
 
-_IN_CONTEXT = Level.COMPLETE_IN_CONTEXT
 MOST_FAULTS = 3
 """After this many crashes, timeouts and protocol errors no further fixed case is asked: each costs a new process."""
 LARGEST_PART = 10
@@ -135,11 +134,9 @@ class Report:
 
     @property
     def _nothing_offered(self) -> str:
-        level, ops = self.options.level, self.options.ops
-        offer = f"its answer to start must name {' or '.join(ops)}"
-        other = (
-            f" (level {_IN_CONTEXT.label}: {' or '.join(JUDGED_OPS[_IN_CONTEXT])})" if level == Level.COMPLETE else ""
-        )
+        level, lower = self.options.level, Level.COMPLETE_IN_CONTEXT
+        offer = f"its answer to start must name {' or '.join(self.options.ops)}"
+        other = f" (level {lower.label}: {' or '.join(JUDGED_OPS[lower])})" if level == Level.COMPLETE else ""
         return f"it offers nothing that shows the level {level.label}: {offer}{other}"
 
     @property
@@ -198,8 +195,9 @@ def conform(
     `advance` is called for each case but those of shrinking.
     """
     report = Report(options, subject.name)
+    run = _Run(subject, report, advance)
     try:
-        _ask_everything(subject, report, advance, saved)
+        run.ask_everything(saved)
         subject.finish()
     except Fault as fault:
         report.faults.append(fault.finding)
@@ -207,101 +205,111 @@ def conform(
         report.interrupted = True
     finally:
         subject.kill()
+        report.smallest, report.minimal = run.search.best, run.search.minimal
     report.program = subject.name
     return report
 
 
-def _ask_everything(subject: Subject, report: Report, advance: Callable[[], None], saved: Sequence[Case]) -> None:
-    options = report.options
-    subject.start()
-    if options.executor and "drive" not in subject.ops:
-        raise protocol_error(answers_enough.id, "the answer to start of an executor must name drive")
-    ops = options.ops if options.executor else subject.ops
-    _ask_fixed(subject, report, (case for case in saved if case.op in ops), advance)
-    asked = (ops, options.level, options.whole)
-    _ask_fixed(subject, report, smoke_cases(*asked, options.claims.groups), advance)
-    _ask_fixed(subject, report, vector_cases(*asked, options.claims), advance)
-    _ask_random(subject, report, advance)
-    if options.large and options.examples and not options.executor and not report.findings:
-        _ask_large(subject, report, advance)
+class _Run:
+    """The questions of a run, asked one after the other; the search looks for a random or large failure."""
 
+    def __init__(self, subject: Subject, report: Report, advance: Callable[[], None]) -> None:
+        self.subject, self.report, self.advance, self.options = subject, report, advance, report.options
+        self.search = FailureSearch(
+            self.ask_to_search, self.options.limit, self.options.shrink_seconds, may_ask=self.is_claimed
+        )
 
-def _ask_fixed(subject: Subject, report: Report, cases: Iterable[Case], advance: Callable[[], None]) -> None:
-    for case in cases:
-        if report.processes_lost >= MOST_FAULTS:
-            return
-        asked = replace(case, classical=report.options.classical)
-        why_not = report.options.claims.why_not(asked)
-        unasked = None if why_not is None else Outcome(asked, skipped=why_not, asked=False)
-        by_kernel = report.options.kernel is not None
-        report.add(unasked or ask(subject, asked, report.options.level, by_kernel=by_kernel))
-        advance()
+    def ask(self, case: Case, seconds: float | None = None) -> Outcome:
+        return ask(self.subject, case, self.options.level, seconds, self.options.kernel is not None)
 
-
-def _ask_random(subject: Subject, report: Report, advance: Callable[[], None]) -> None:
-    """Ask as many of each op."""
-    from carproof.conform.asking.random_cases import (  # noqa: PLC0415 - loads hypothesis
-        classical_cases,
-        execution_cases,
-        random_cases,
-    )
-
-    options = report.options
-    ours = random_cases(subject.ops, options.level, options.whole, options.claims)
-    by_op = {"plan": classical_cases()} if options.classical else ours
-    if options.executor:
-        by_op = {EXECUTION: execution_cases(options.claims)}
-
-    def ask_one(case: Case, seconds: float | None) -> Outcome:
-        outcome = ask(subject, case, options.level, seconds, options.kernel is not None)
-        if search.best is None:
-            report.add(outcome)
-            advance()
+    def ask_to_search(self, case: Case, seconds: float | None) -> Outcome:
+        """Ask a random case, or after the first failure a smaller one, which does not count."""
+        outcome = self.ask(case, seconds)
+        if self.search.best is None:
+            self.add(outcome)
         return outcome
 
-    def is_claimed(case: Case) -> bool:
-        return options.claims.why_not(case) is None
+    def add(self, outcome: Outcome) -> None:
+        self.report.add(outcome)
+        self.advance()
 
-    search = FailureSearch(ask_one, options.limit, options.shrink_seconds, is_claimed)
-    try:
+    def is_claimed(self, case: Case) -> bool:
+        return self.options.claims.why_not(case) is None
+
+    def ask_everything(self, saved: Sequence[Case]) -> None:
+        options = self.options
+        self.subject.start()
+        ops = self.subject.ops
+        if options.executor:
+            if "drive" not in ops:
+                raise protocol_error(answers_enough.id, "the answer to start of an executor must name drive")
+            ops = options.ops
+        self.ask_fixed(case for case in saved if case.op in ops)
+        self.ask_fixed(smoke_cases(ops, options.level, options.whole, options.claims.groups))
+        self.ask_fixed(vector_cases(ops, options.level, options.whole, options.claims))
+        self.ask_random(ops)
+        if options.large and options.examples and not options.executor:
+            self.ask_large(ops)
+
+    def ask_fixed(self, cases: Iterable[Case]) -> None:
+        for case in cases:
+            if self.report.processes_lost >= MOST_FAULTS:
+                return
+            asked = replace(case, classical=self.options.classical)
+            why_not = self.options.claims.why_not(asked)
+            self.add(self.ask(asked) if why_not is None else Outcome(asked, skipped=why_not, asked=False))
+
+    def ask_random(self, ops: Sequence[str]) -> None:
+        """Ask as many of each op."""
+        from carproof.conform.asking.random_cases import (  # noqa: PLC0415 - loads hypothesis
+            classical_cases,
+            execution_cases,
+            random_cases,
+        )
+
+        options = self.options
+        if options.executor:
+            by_op = {EXECUTION: execution_cases(options.claims)}
+        elif options.classical:
+            by_op = {"plan": classical_cases()}
+        else:
+            by_op = dict(random_cases(ops, options.level, options.whole, options.claims))
         for number, cases in enumerate(by_op.values()):
             examples = (options.examples + number) // len(by_op)
-            if examples and search.best is None:
-                search.run(cases.filter(is_claimed), examples, options.seed)
-    finally:
-        report.smallest, report.minimal = search.best, search.minimal
+            if examples and self.search.best is None:
+                self.search.run(cases.filter(self.is_claimed), examples, options.seed)
 
-
-def _ask_large(subject: Subject, report: Report, advance: Callable[[], None]) -> None:
-    """Ask large cases until one fails or the time is over; of what is too slow, none of its size is asked again."""
-    options = report.options
-    ends, most = monotonic() + options.large, options.large / LARGEST_PART
-    too_large: dict[str, int] = {}
-    ladder = list(rungs(subject.ops, options.level, options.seed, options.whole))
-    for position, rung in enumerate(ladder):
-        if monotonic() >= ends:
-            report.cut.append(_not_asked(ladder, position, options.large))
+    def ask_large(self, ops: Sequence[str]) -> None:
+        """Ask large cases until one fails or the time is over; of what is too slow, none of its size is asked again."""
+        if self.search.best is not None or self.report.findings:
             return
-        if rung.robots >= too_large.get(rung.op, rung.robots + 1):
-            continue
-        started = monotonic()
-        case = large_case(rung, options.claims, options.classical)
-        if case is None or options.claims.why_not(case) is not None:
-            continue
-        outcome = ask(subject, case, options.level, min(options.limit, most), options.kernel is not None)
-        if outcome.finding is not None and outcome.finding.category == Category.TIMEOUT:
-            too_large[rung.op] = rung.robots
-            report.cut.append(f"{rung.op} of {rung.robots} robots is too slow: {outcome.finding.message} ({case.name})")
-            continue
-        report.add(outcome)
-        advance()
-        if outcome.finding is not None:
-            _shrink(subject, report, outcome)
-            return
-        if monotonic() - started > most and rung.robots < SIZES[-1]:
-            too_large[rung.op] = next(robots for robots in SIZES if robots > rung.robots)
-            message = f"{rung.op} of {rung.robots} robots took more than {most:g} s with its judgement"
-            report.cut.append(f"{message}, so none of more robots was asked")
+        options, cut = self.options, self.report.cut
+        ends, most = monotonic() + options.large, options.large / LARGEST_PART
+        too_large: dict[str, int] = {}
+        ladder = list(rungs(ops, options.level, options.seed, options.whole))
+        for position, rung in enumerate(ladder):
+            if monotonic() >= ends:
+                cut.append(_not_asked(ladder, position, options.large))
+                return
+            if rung.robots >= too_large.get(rung.op, rung.robots + 1):
+                continue
+            started = monotonic()
+            case = large_case(rung, options.claims, options.classical)
+            if case is None or not self.is_claimed(case):
+                continue
+            outcome = self.ask(case, min(options.limit, most))
+            if outcome.finding is not None and outcome.finding.category == Category.TIMEOUT:
+                too_large[rung.op] = rung.robots
+                cut.append(f"{rung.op} of {rung.robots} robots is too slow: {outcome.finding.message} ({case.name})")
+                continue
+            self.add(outcome)
+            if outcome.finding is not None:
+                self.search.run_on(outcome)
+                return
+            if monotonic() - started > most and rung.robots < SIZES[-1]:
+                too_large[rung.op] = next(robots for robots in SIZES if robots > rung.robots)
+                message = f"{rung.op} of {rung.robots} robots took more than {most:g} s with its judgement"
+                cut.append(f"{message}, so none of more robots was asked")
 
 
 def _not_asked(ladder: Sequence[Rung], position: int, seconds: float) -> str:
@@ -309,18 +317,3 @@ def _not_asked(ladder: Sequence[Rung], position: int, seconds: float) -> str:
     of_all, left = (Counter(rung.robots for rung in ladder[first:]) for first in (0, position))
     sizes = ", ".join(f"{left[robots]} of {of_all[robots]} of {robots} robots" for robots in SIZES if left[robots])
     return f"the {seconds:g} s for large cases were over; not asked: {sizes}"
-
-
-def _shrink(subject: Subject, report: Report, outcome: Outcome) -> None:
-    options = report.options
-
-    def ask_one(case: Case, seconds: float | None) -> Outcome:
-        return ask(subject, case, options.level, seconds, options.kernel is not None)
-
-    search = FailureSearch(
-        ask_one, options.limit, options.shrink_seconds, lambda case: options.claims.why_not(case) is None
-    )
-    try:
-        search.run_on(outcome)
-    finally:
-        report.smallest, report.minimal = search.best, search.minimal

@@ -13,7 +13,19 @@ from typing import TypeAlias, TypeVar
 from msgspec import structs
 
 from carp_reference.execution import order_of
-from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, ResourceId, Robot, RobotId, Stop, Visit
+from carp_spec import (
+    Instance,
+    Plan,
+    Refusal,
+    Resource,
+    ResourceGraph,
+    ResourceId,
+    Robot,
+    RobotId,
+    Solution,
+    Stop,
+    Visit,
+)
 from carp_spec.requests import sound_solution
 from carproof.conform.cases import EXECUTION, NUMBERS, Case, NumberOf, renamed
 from carproof.execution.delays import stuck
@@ -67,20 +79,17 @@ def _steps(value: int, least: int) -> Iterator[int]:
         step //= 2
 
 
-def _made(case: Case, instance: Instance, plans: Sequence[Plan]) -> Case:
+def _made(case: Case, instance: Instance, plans: Sequence[Plan] | None = None) -> Case:
     """The question with another instance and some of its plans; a robot that loses its plan is unplanned."""
+    plans = case.solution.plans if plans is None else plans
     kept = {plan.robot for plan in plans}
     lost = [plan.robot for plan in case.solution.plans if plan.robot not in kept]
     order = tuple(robot for robot in case.solution.order if robot in instance.robot and robot not in lost)
     unplanned = tuple(robot for robot in (*case.solution.unplanned, *lost) if robot in instance.robot)
     ended = tuple(plans) if case.op == "check" else tuple(_ended(instance, plan) for plan in plans)
     delays = tuple(delay for delay in case.delays if delay[0] in kept)
-    return replace(
-        case,
-        instance=instance,
-        solution=replace(case.solution, plans=ended, order=order, unplanned=unplanned),
-        delays=delays,
-    )
+    solution = replace(case.solution, plans=ended, order=order, unplanned=unplanned)
+    return replace(case, instance=instance, solution=solution, delays=delays)
 
 
 def _ended(instance: Instance, plan: Plan) -> Plan:
@@ -89,6 +98,26 @@ def _ended(instance: Instance, plan: Plan) -> Plan:
     stay = instance.stay(plan.robot, instance.robot[plan.robot].stops[-1])
     leave = None if instance.after_goal == "park" else last.enter + stay
     return Plan(plan.robot, (*visits, Visit(last.resource, last.enter, leave)))
+
+
+def _with_graph(case: Case, **changes: object) -> Case:
+    return _made(case, replace(case.instance, graph=replace(case.instance.graph, **changes)))  # type: ignore[arg-type]
+
+
+def _with_robot(case: Case, robot: RobotId, **changes: object) -> Instance:
+    changed = (replace(r, **changes) if r.id == robot else r for r in case.instance.robots)  # type: ignore[arg-type]
+    return replace(case.instance, robots=tuple(map(_once, changed)))
+
+
+def _once(robot: Robot) -> Robot:
+    """The robot with one stop where neighbouring ones came to be at one place."""
+    stops = robot.stops
+    kept = tuple(stop for place, stop in enumerate(stops) if stop.resource != stops[max(place - 1, 0)].resource)
+    return replace(robot, stops=(stops[0], *kept))
+
+
+def _with_visits(case: Case, change: Callable[[Visit], Visit]) -> list[Plan]:
+    return [Plan(plan.robot, tuple(map(change, plan.visits))) for plan in case.solution.plans]
 
 
 def _fewer_robots(case: Case) -> Iterable[Edit]:
@@ -114,11 +143,8 @@ def _fewer_resources(case: Case) -> Iterable[Edit]:
         used = {robot.start for robot in case.instance.robots}
         used |= {stop.resource for robot in case.instance.robots for stop in robot.stops}
         used |= {visit.resource for plan in case.solution.plans for visit in plan.visits}
-        gone, graph = some - used, case.instance.graph
-        resources = tuple(each for each in graph.resources if each.id not in gone)
-        edges = tuple(edge for edge in graph.edges if gone.isdisjoint(edge))
-        instance = replace(case.instance, graph=replace(graph, resources=resources, edges=edges))
-        return _made(case, instance, case.solution.plans)
+        stay = {id: id for id in case.instance.graph.index if id in used or id not in some}
+        return _made(case, replace(case.instance, graph=_shrunk(case.instance.graph, stay)))
 
     return (partial(edit, some) for some in _chunks([*case.instance.graph.index]))
 
@@ -132,7 +158,7 @@ def _shorter_ways(case: Case) -> Iterable[Edit]:
         if not gone or (into is not None and into not in graph.index):
             return None
         became = _joined(graph, gone) if into is None else {id: into if id in gone else id for id in graph.index}
-        return _moved(case, gone, became) if len(became) == len(graph.index) else None
+        return _moved(case, became) if len(became) == len(graph.index) else None
 
     graph, beside = case.instance.graph, _beside(case.instance.graph)
     yield from (partial(edit, some, None) for some in _chunks([*graph.index]) if len(some) > 1)
@@ -163,21 +189,24 @@ def _joined(graph: ResourceGraph, gone: frozenset[ResourceId]) -> dict[ResourceI
     return became
 
 
-def _moved(case: Case, gone: frozenset[ResourceId], became: Mapping[ResourceId, ResourceId]) -> Case | None:
-    """The question on the graph in which each resource became another one or stayed."""
-    graph = case.instance.graph
-    moves = [(became[source], became[target]) for source, target in graph.edges]
-    distinct = {(move if graph.directed else frozenset(move)): move for move in moves if move[0] != move[1]}
-    resources = tuple(each for each in graph.resources if each.id not in gone)
-    robots = tuple(_once(each.in_names(became.__getitem__)) for each in case.instance.robots)
-    groups = tuple(
+def _shrunk(graph: ResourceGraph, became: Mapping[ResourceId, ResourceId]) -> ResourceGraph:
+    """The graph in which each resource became another one or stayed; those left out are gone."""
+    edges = [(became[a], became[b]) for a, b in graph.edges if a in became and b in became and became[a] != became[b]]
+    distinct = {(edge if graph.directed else frozenset(edge)): edge for edge in edges}
+    groups = (
         replace(group, resources=tuple(dict.fromkeys(became[each] for each in group.resources if each in became)))
         for group in graph.groups
     )
+    resources = tuple(each for each in graph.resources if became.get(each.id) == each.id)
     kept = tuple(group for group in groups if group.resources)
-    smaller = ResourceGraph(resources, tuple(distinct.values()), graph.directed, kept)
+    return ResourceGraph(resources, tuple(distinct.values()), graph.directed, kept)
+
+
+def _moved(case: Case, became: Mapping[ResourceId, ResourceId]) -> Case | None:
+    """The question on the graph in which each resource became another one or stayed."""
     if any(visit.resource not in became for plan in case.solution.plans for visit in plan.visits):
         return None  # a plan to check may be anywhere
+    robots = tuple(_once(each.in_names(became.__getitem__)) for each in case.instance.robots)
     places: dict[tuple[RobotId, int], int] = {}
     plans = []
     for plan in case.solution.plans:
@@ -192,47 +221,29 @@ def _moved(case: Case, gone: frozenset[ResourceId], became: Mapping[ResourceId, 
         plans.append(Plan(plan.robot, tuple(visits)))
     delays = {(robot, places[robot, place]): ticks for robot, place, ticks in case.delays}
     joined = replace(case, delays=tuple((*node, ticks) for node, ticks in delays.items()))
-    return _made(joined, replace(case.instance, graph=smaller, robots=robots), plans)
-
-
-def _once(robot: Robot) -> Robot:
-    """The robot with one stop where neighbouring ones came to be at one place."""
-    stops = robot.stops
-    kept = tuple(stop for place, stop in enumerate(stops) if stop.resource != stops[max(place - 1, 0)].resource)
-    return replace(robot, stops=(stops[0], *kept))
+    return _made(joined, replace(case.instance, graph=_shrunk(case.instance.graph, became), robots=robots), plans)
 
 
 def _fewer_stops(case: Case) -> Iterable[Edit]:
     """Take stops but the last, then ticks of service."""
 
-    def without(robot: RobotId, place: int, case: Case) -> Case | None:
+    def edit(robot: RobotId, place: int, step: int | None, case: Case) -> Case | None:
         stops = case.instance.robot[robot].stops if robot in case.instance.robot else ()
-        if place >= len(stops) - 1:
+        if place >= len(stops) - (step is None):
             return None
-        return _with_stops(case, robot, (*stops[:place], *stops[place + 1 :]))
-
-    def shorter(robot: RobotId, place: int, step: int, case: Case) -> Case | None:
-        stops = case.instance.robot[robot].stops if robot in case.instance.robot else ()
-        if place >= len(stops) or stops[place].service < step:
+        less = [] if step is None else [Stop(stops[place].resource, stops[place].service - step)]
+        if any(stop.service < 0 for stop in less):
             return None
-        stop = Stop(stops[place].resource, stops[place].service - step)
-        return _with_stops(case, robot, (*stops[:place], stop, *stops[place + 1 :]))
+        return _made(case, _with_robot(case, robot, stops=(*stops[:place], *less, *stops[place + 1 :])))
 
     each = [(robot.id, place, stop) for robot in case.instance.robots for place, stop in enumerate(robot.stops)]
-    yield from (partial(without, robot, place) for robot, place, _ in reversed(each))
-    yield from (partial(shorter, robot, place, step) for robot, place, stop in each for step in _steps(stop.service, 0))
-
-
-def _with_stops(case: Case, robot: RobotId, stops: tuple[Stop, ...]) -> Case:
-    robots = (_once(replace(each, stops=stops)) if each.id == robot else each for each in case.instance.robots)
-    return _made(case, replace(case.instance, robots=tuple(robots)), case.solution.plans)
+    yield from (partial(edit, robot, place, None) for robot, place, _ in reversed(each))
+    yield from (partial(edit, robot, place, step) for robot, place, stop in each for step in _steps(stop.service, 0))
 
 
 def _fewer_edges(case: Case) -> Iterable[Edit]:
     def edit(gone: frozenset[tuple[ResourceId, ResourceId]], case: Case) -> Case:
-        edges = tuple(edge for edge in case.instance.graph.edges if edge not in gone)
-        instance = replace(case.instance, graph=replace(case.instance.graph, edges=edges))
-        return _made(case, instance, case.solution.plans)
+        return _with_graph(case, edges=tuple(edge for edge in case.instance.graph.edges if edge not in gone))
 
     return (partial(edit, gone) for gone in _chunks(case.instance.graph.edges))
 
@@ -241,18 +252,16 @@ def _simpler(case: Case) -> Iterable[Edit]:
     """Let robots vanish and edges go both ways; let a robot without plan end where it starts; shorten far ids."""
 
     def vanish(case: Case) -> Case:
-        return _made(case, replace(case.instance, after_goal="vanish"), case.solution.plans)
+        return _made(case, replace(case.instance, after_goal="vanish"))
 
     def both_ways(case: Case) -> Case:
-        graph = case.instance.graph
-        edges = {frozenset(edge): edge for edge in graph.edges}
-        undirected = ResourceGraph(graph.resources, tuple(edges.values()), groups=graph.groups)
-        return _made(case, replace(case.instance, graph=undirected), case.solution.plans)
+        edges = {frozenset(edge): edge for edge in case.instance.graph.edges}
+        return _with_graph(case, edges=tuple(edges.values()), directed=False)
 
     def stay(robot: RobotId, case: Case) -> Case | None:
-        robots = tuple(replace(r, stops=(Stop(r.start),)) if r.id == robot else r for r in case.instance.robots)
-        planned = any(plan.robot == robot for plan in case.solution.plans)
-        return None if planned else replace(case, instance=replace(case.instance, robots=robots))
+        if robot not in case.instance.robot or any(plan.robot == robot for plan in case.solution.plans):
+            return None
+        return replace(case, instance=_with_robot(case, robot, stops=(Stop(case.instance.robot[robot].start),)))
 
     return (vanish, both_ways, *(partial(stay, robot) for robot in case.instance.robot), _numbered)
 
@@ -264,20 +273,20 @@ def _numbered(case: Case) -> Case | None:
         return None
     place: dict[ResourceId, ResourceId] = {**instance.graph.index}
     number: dict[RobotId, RobotId] = {robot: position for position, robot in enumerate(instance.robot)}
-    plans = tuple(
-        Plan(
-            number.get(plan.robot, plan.robot),
-            tuple(structs.replace(visit, resource=place.get(visit.resource, visit.resource)) for visit in plan.visits),
-        )
-        for plan in solution.plans
-    )
-    order, unplanned = (
-        tuple(number.get(robot, robot) for robot in names) for names in (solution.order, solution.unplanned)
+
+    def name(robot: RobotId) -> RobotId:
+        return number.get(robot, robot)
+
+    plans = _with_visits(case, lambda visit: structs.replace(visit, resource=place.get(visit.resource, visit.resource)))
+    named = Solution(
+        tuple(Plan(name(plan.robot), plan.visits) for plan in plans),
+        tuple(map(name, solution.order)),
+        tuple(map(name, solution.unplanned)),
     )
     return replace(
         case,
         instance=renamed(instance, lambda position: position),
-        solution=replace(solution, plans=plans, order=order, unplanned=unplanned),
+        solution=named,
         robot=None if case.robot is None else number[case.robot],
         delays=tuple((number[robot], visit, ticks) for robot, visit, ticks in case.delays),
     )
@@ -285,33 +294,26 @@ def _numbered(case: Case) -> Case | None:
 
 def _smaller_numbers(case: Case) -> Iterable[Edit]:
     """Each number of resources and robots, for many at once and then alone."""
-
-    def edit(of: NumberOf, some: frozenset[RobotId], step: int, case: Case) -> Case:
-        return _with_numbers(case, of, dict.fromkeys(some, -step))
-
     for of in NUMBERS:
         values = of.values(case.instance)
         for some in _chunks([*values]):
             steps = _steps(max(values[id] for id in some), of.number.least)
-            yield from (partial(edit, of, some, step) for step in steps)
+            yield from (partial(_with_less, of, some, step) for step in steps)
 
 
-def _with_numbers(case: Case, of: NumberOf, change: Mapping[ResourceId, int]) -> Case:
-    """The question with some numbers changed, no lower than the least; who is released sooner waits at the start."""
+def _with_less(of: NumberOf, some: frozenset[ResourceId], step: int, case: Case) -> Case:
+    """The question with some numbers smaller, no lower than the least; who is released sooner waits at the start."""
 
-    def changed(each: T, id: ResourceId) -> T:
-        if id not in change:
-            return each
-        value = max(of.number.least, getattr(each, of.name) + change[id])
+    def less(each: T) -> T:
+        value = max(of.number.least, getattr(each, of.name) - step)
         return replace(each, **{of.name: value})  # type: ignore[type-var]
 
-    instance = case.instance
+    changed = tuple(less(each) if each.id in some else each for each in of.parts(case.instance))
     if of.kind is Resource:
-        resources = tuple(changed(each, each.id) for each in instance.graph.resources)
-        return _made(case, replace(instance, graph=replace(instance.graph, resources=resources)), case.solution.plans)
-    instance = replace(instance, robots=tuple(changed(each, each.id) for each in instance.robots))
+        return _with_graph(case, resources=changed)
+    instance = replace(case.instance, robots=changed)  # type: ignore[arg-type]
     if of.name != "release" or case.op == "check":
-        return _made(case, instance, case.solution.plans)
+        return _made(case, instance)
     plans = []
     for plan in case.solution.plans:
         first, *others = plan.visits
@@ -345,19 +347,12 @@ def _shifted(case: Case, since: int, step: int) -> Case:
     def sooner(tick: int) -> int:
         return tick - step if tick >= since else tick
 
+    def moved(visit: Visit) -> Visit:
+        return Visit(visit.resource, sooner(visit.enter), None if visit.leave is None else sooner(visit.leave))
+
     robots = tuple(replace(robot, release=sooner(robot.release)) for robot in case.instance.robots)
-    plans = tuple(
-        Plan(
-            plan.robot,
-            tuple(
-                Visit(visit.resource, sooner(visit.enter), None if visit.leave is None else sooner(visit.leave))
-                for visit in plan.visits
-            ),
-        )
-        for plan in case.solution.plans
-    )
-    earlier = replace(case, now=sooner(case.now), solution=replace(case.solution, plans=plans))
-    return replace(earlier, instance=replace(case.instance, robots=robots))
+    solution = replace(case.solution, plans=tuple(_with_visits(case, moved)))
+    return replace(case, now=sooner(case.now), solution=solution, instance=replace(case.instance, robots=robots))
 
 
 def _fewer_visits(case: Case) -> Iterable[Edit]:
@@ -369,9 +364,8 @@ def _fewer_visits(case: Case) -> Iterable[Edit]:
             return None
         left = visits[1:] if at_start else visits[:-1]
         ends = {"start": left[0].resource, "release": left[0].enter} if at_start else {"goal": left[-1].resource}
-        robots = tuple(replace(r, **ends) if r.id == robot else r for r in case.instance.robots)  # type: ignore[arg-type]
         plans = [Plan(robot, left) if plan.robot == robot else plan for plan in case.solution.plans]
-        return _made(case, replace(case.instance, robots=robots), plans)
+        return _made(case, _with_robot(case, robot, **ends), plans)
 
     return (partial(edit, plan.robot, at_start) for plan in case.solution.plans for at_start in (False, True))
 
