@@ -7,6 +7,7 @@ a tick that needs more than 16 bits. Equal seeds give equal cases.
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from math import isqrt
 
 from carp_spec import (
     AfterGoal,
@@ -31,7 +32,6 @@ from carproof.engines import engine_named
 from carproof.generate import Fleet, Grid, Range, Traits, Warehouse, grid_instance, warehouse_instance
 from carproof.generate.fleet import random_robots
 from carproof.generate.grid import cell_edges, cell_graph
-from carproof.generate.options import JUST_ONE
 from carproof.testing.random_instances import Draw, Mix, draw_stops
 
 SIZES = (10, 30, 100, 300, 1000)
@@ -129,7 +129,8 @@ def large_case(rung: Rung, claims: Claims, classical: bool) -> Case | None:
     if classical:
         instance = _blocked_grid(rung.robots, draw)
     else:
-        instance = _with_traffic(PLACES[rung.place](rung.robots, traffic, draw), traffic, claims, draw)
+        traits = Traits(Range(1, traffic.capacity), Range(1, traffic.duration))
+        instance = _with_traffic(PLACES[rung.place](rung.robots, traits, draw), traffic, claims, draw)
     try:
         solution = engine_named(None).plan(instance, Carp())
     except Refusal:  # a tick that the compiled planner does not hold
@@ -164,40 +165,40 @@ def _fleet(robots: int, draw: Draw, distinct: bool = True) -> Fleet:
     return Fleet(robots, next(draw.stream), distinct="both" if distinct else "starts")
 
 
-def _grid(robots: int, traffic: Traffic, draw: Draw) -> Instance:
+def _grid(robots: int, traits: Traits, draw: Draw) -> Instance:
     """A full grid with three cells for a robot."""
     side = _side(3 * robots)
-    return grid_instance(Grid(side, side), _fleet(robots, draw), _traits(traffic))
+    return grid_instance(Grid(side, side), _fleet(robots, draw), traits)
 
 
-def _paper_map(robots: int, traffic: Traffic, draw: Draw) -> Instance:
+def _paper_map(robots: int, traits: Traits, draw: Draw) -> Instance:
     """A map of the paper, between a tree and a full grid, with four cells for a robot."""
     side = _side(4 * robots)
     grid = Grid(side, side, draw.between(3, 15), next(draw.stream))
-    return grid_instance(grid, _fleet(robots, draw), _traits(traffic))
+    return grid_instance(grid, _fleet(robots, draw), traits)
 
 
-def _warehouse(robots: int, traffic: Traffic, draw: Draw) -> Instance:
+def _warehouse(robots: int, traits: Traits, draw: Draw) -> Instance:
     """A warehouse whose robots bring goods to a few stations."""
     blocks = _side(robots // 3)
     plan = Warehouse(columns=max(1, blocks // 2), rows=2 * blocks, stations=max(2, robots // 8))
-    return warehouse_instance(plan, _fleet(robots, draw, distinct=False), _traits(traffic))
+    return warehouse_instance(plan, _fleet(robots, draw, distinct=False), traits)
 
 
-def _corridor(robots: int, traffic: Traffic, draw: Draw) -> Instance:
+def _corridor(robots: int, traits: Traits, draw: Draw) -> Instance:
     """A long corridor in which all go to the right."""
-    return _row(4 * robots, robots, draw, _traits(traffic))
+    return _row(4 * robots, robots, draw, traits)
 
 
-def _bottleneck(robots: int, traffic: Traffic, draw: Draw) -> Instance:
+def _bottleneck(robots: int, traits: Traits, draw: Draw) -> Instance:
     """A short corridor, in which all robots meet; where its resources hold several, all start in the first of them."""
-    length = draw.between(4, 12)
-    if traffic.capacity == 1:
-        return _row(length, robots, draw, _traits(traffic))
-    most = max(3, min(traffic.capacity, robots // 2))
-    row = _row(length, robots, draw, replace(_traits(traffic), capacity=Range(3, most)))
+    length, room = draw.between(4, 12), traits.capacity.high
+    if room == 1:
+        return _row(length, robots, draw, traits)
+    most = max(3, min(room, robots // 2))
+    row = _row(length, robots, draw, replace(traits, capacity=Range(3, most)))
     first, *others = row.graph.resources
-    graph = replace(row.graph, resources=(replace(first, capacity=min(robots, traffic.capacity)), *others))
+    graph = replace(row.graph, resources=(replace(first, capacity=min(robots, room)), *others))
     going = tuple(replace(each, start=0, release=draw.between(0, 3)) for each in row.robots)
     return replace(row, graph=graph, robots=going)
 
@@ -223,7 +224,7 @@ def _blocked_grid(robots: int, draw: Draw) -> Instance:
     return Instance(graph, random_robots(_fleet(robots, draw), ids, ids), "park")
 
 
-PLACES: dict[str, Callable[[int, Traffic, Draw], Instance]] = {
+PLACES: dict[str, Callable[[int, Traits, Draw], Instance]] = {
     "grid": _grid,
     "bottleneck": _bottleneck,
     "warehouse": _warehouse,
@@ -234,18 +235,7 @@ PLACES: dict[str, Callable[[int, Traffic, Draw], Instance]] = {
 
 def _side(cells: int) -> int:
     """The side of the least square with as many cells."""
-    side = 1
-    while side * side < cells:
-        side += 1
-    return side
-
-
-def _traits(traffic: Traffic) -> Traits:
-    return Traits(_range(traffic.capacity), _range(traffic.duration))
-
-
-def _range(most: int) -> Range:
-    return Range(1, most) if most > 1 else JUST_ONE
+    return 1 + isqrt(max(1, cells) - 1)
 
 
 def _with_traffic(instance: Instance, traffic: Traffic, claims: Claims, draw: Draw) -> Instance:
