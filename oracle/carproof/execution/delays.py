@@ -72,12 +72,12 @@ def slack(order: Order) -> dict[Node, int | None]:
                     latest[edge.before] = latest[node] - edge.ticks
                     if edge.before in alike:
                         waiting.append(edge.before)
-    return {node: _slack_at(order, latest, node) for node in order.nodes}
-
-
-def _slack_at(order: Order, latest: Mapping[Node, int], node: Node) -> int | None:
-    edges = (edge for edge in order.out_of.get(node, ()) if edge.holds)
-    return min((latest[edge.after] - edge.ticks - order.visit(node).enter for edge in edges), default=None)
+    return {
+        node: min(
+            (latest[edge.after] - edge.ticks - tick for edge in order.out_of.get(node, ()) if edge.holds), default=None
+        )
+        for node, tick in ticks.items()
+    }
 
 
 def late_robots(order: Order, delays: Sequence[Delay]) -> dict[RobotId, int]:
@@ -94,15 +94,11 @@ def smallest_collision(instance: Instance, solution: Solution) -> tuple[Delay, .
     allow. A collision is either too many robots in a resource or a group when one enters, or two robots that exchange
     places. A delay is spent best at the visit that it makes too long. Of equal sums the fewest delays are taken.
     """
-    best: tuple[Delay, ...] | None = None
-    for delays in _collisions(instance, solution):
-        if best is None or _worth(delays) < _worth(best):
-            best = delays
-    return best
 
+    def worth(delays: Sequence[Delay]) -> tuple[int, int]:
+        return sum(delay.ticks for delay in delays), len(delays)
 
-def _worth(delays: Sequence[Delay]) -> tuple[int, int]:
-    return (sum(delay.ticks for delay in delays), len(delays))
+    return min(_collisions(instance, solution), key=worth, default=None)
 
 
 def _collisions(instance: Instance, solution: Solution) -> Iterator[tuple[Delay, ...]]:

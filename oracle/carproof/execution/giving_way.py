@@ -114,7 +114,10 @@ def give_way(
         least = arrival if least is None else least
         around = plan_around(instance, others, first, now, engine, kept)
         if isinstance(around, dict):
-            after = solution_with(solution, around, first)
+            unchanged = [each for each in solution.order if each != robot]
+            unplanned = tuple(each for each in solution.unplanned if each != robot)
+            changed = (first, *(around[each] for each in unchanged))
+            after = Solution(changed, (robot, *unchanged), unplanned)
             extra = {
                 plan.robot: plan_cost(instance, around[plan.robot]) - plan_cost(instance, plan)
                 for plan in others
@@ -190,11 +193,3 @@ def colliding(instance: Instance, first: Sequence[Plan], others: Sequence[Plan])
             return sorted(taken, key=place.__getitem__)
         taken += out
         rest = [plan for plan in rest if plan.robot not in out]
-
-
-def solution_with(solution: Solution, plans: Mapping[RobotId, Plan], first: Plan) -> Solution:
-    """The solution with these plans; the robot with priority comes first in the planning order."""
-    unchanged = [robot for robot in solution.order if robot != first.robot]
-    changed = (first, *(plans[robot] for robot in unchanged))
-    unplanned = tuple(robot for robot in solution.unplanned if robot != first.robot)
-    return Solution(changed, (first.robot, *unchanged), unplanned)

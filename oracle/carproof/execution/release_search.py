@@ -54,15 +54,14 @@ class Search:
         """Moves by which all robots finish, `None` if there are none."""
         state, moves = self._settled({robot: start[robot] for robot in self.robots})
         first = tuple(state.values())
-        before: dict[Places, tuple[Places, tuple[RobotId, ...]] | None] = {first: None}
-        how: dict[Places, tuple[RobotId, ...]] = {first: moves}
+        before: dict[Places, tuple[Places | None, tuple[RobotId, ...]]] = {first: (None, moves)}
         waiting = [first]
         while waiting:
             places = waiting.pop()
             self.budget.spend()
             state = dict(zip(self.robots, places, strict=True))
             if all(self.ways.has_ended(robot, place) for robot, place in state.items()):
-                return _way_to(places, before, how)
+                return _way_to(places, before)
             used = self.ways.used(state)
             for robot in self._last_planned_first(state):
                 if self.ways.is_open(robot, state[robot], used):
@@ -112,15 +111,13 @@ class Search:
 
 
 def _way_to(
-    places: Places,
-    before: Mapping[Places, tuple[Places, tuple[RobotId, ...]] | None],
-    how: Mapping[Places, tuple[RobotId, ...]],
+    places: Places | None, before: Mapping[Places, tuple[Places | None, tuple[RobotId, ...]]]
 ) -> tuple[RobotId, ...]:
     parts: list[tuple[RobotId, ...]] = []
-    while (step := before[places]) is not None:
-        places, moves = step
+    while places is not None:
+        places, moves = before[places]
         parts.append(moves)
-    return (*how[places], *(robot for moves in reversed(parts) for robot in moves))
+    return tuple(robot for moves in reversed(parts) for robot in moves)
 
 
 def all_places(ways: Ways, start: State, robots: Sequence[RobotId], budget: Budget) -> frozenset[Places]:

@@ -218,17 +218,13 @@ def dot(order: Order) -> str:
     number = {node: place for place, node in enumerate(order.nodes)}
     for node, place in number.items():
         visit = order.visit(node)
-        label = _quoted(f"{node[0]}: {visit.resource} at {visit.enter}")
+        label = msgspec.json.encode(f"{node[0]}: {visit.resource} at {visit.enter}").decode()
         lines.append(f"  v{place} [label={label}];")
     for edge in order.edges:
         style = "" if edge.kind == "travel" else ", style=dashed"
         colour = ", color=red" if edge in cycle else ""
         lines.append(f'  v{number[edge.before]} -> v{number[edge.after]} [label="{edge.ticks}"{style}{colour}];')
     return "\n".join([*lines, "}", ""])
-
-
-def _quoted(text: str) -> str:
-    return msgspec.json.encode(text).decode()
 
 
 class ExecutionDocument(msgspec.Struct, frozen=True):

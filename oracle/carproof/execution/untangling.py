@@ -6,10 +6,11 @@ and gets the earliest plan beside the others. This is done with the robot whose 
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from itertools import takewhile
+from itertools import count, takewhile
 
 from carp_spec import Instance, Plan, Robot, RobotId, Solution, Visit, plan_cost
 from carp_spec.execution.dependencies import dependencies, shortest_cycle
+from carp_spec.windows import occupancy, stays_within
 from carproof.engines import Engine
 
 MOST_ROUNDS = 10_000
@@ -74,23 +75,10 @@ def query_kept_out(
         resources = tuple(replace(each, capacity=min(each.capacity, most)) for each in graph.resources)
         graph = replace(graph, resources=resources)
     guards: list[Plan] = []
-    taken = {each.id for each in instance.robots}
-    number = len(taken)
+    names = (number for number in count(len(instance.robots)) if number not in instance.robot)
     for block in blocks:
-        here = sum(
-            visit.resource == block.resource
-            and visit.enter <= block.enter
-            and (visit.leave is None or block.enter < visit.leave)
-            for plan in others
-            for visit in plan.visits
-        )
-        for _ in range(graph.resource[block.resource].capacity - here):
-            while number in taken:
-                number += 1
-            taken.add(number)
-            guards.append(Plan(number, (block,)))
-    robots = (
-        *instance.robots,
-        *(Robot(guard.robot, guard.visits[0].resource, guard.visits[0].resource) for guard in guards),
-    )
+        here = occupancy(stays_within(others, {block.resource}), block.enter)
+        guards += [Plan(next(names), (block,)) for _ in range(graph.resource[block.resource].capacity - here)]
+    standing = (Robot(guard.robot, guard.visits[0].resource, guard.visits[0].resource) for guard in guards)
+    robots = (*instance.robots, *standing)
     return engine.find(replace(instance, graph=graph, robots=robots), [*others, *guards], robot)
