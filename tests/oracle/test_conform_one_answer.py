@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any, TypeAlias
 
 import msgspec
@@ -254,8 +253,7 @@ def test_carproof_and_a_plan_that_contradict_each_other_are_a_fault(monkeypatch:
         (None, "has no plan, and"),
         (later(plan("new", *FIRST_GOES)), "arrives at 4 at best: not so"),
     ):
-        engine = SimpleNamespace(query=lambda *_, best=best: best)
-        monkeypatch.setattr("carproof.conform.judging.judges.engine_for", lambda _, engine=engine: engine)
+        monkeypatch.setattr("carproof.conform.judging.judges._best", lambda *_, best=best: best)
         with pytest.raises(RuntimeError, match=message):
             first_finding(QUERY, goes(*FIRST_GOES), Level.COMPLETE)
 

@@ -4,7 +4,18 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
-from carp_spec import Instance, Neighbourhood, Planner, Resource, ResourceGraph, ResourceId, Robot, RobotId, Solution
+from carp_spec import (
+    Instance,
+    Neighbourhood,
+    Plan,
+    Planner,
+    Resource,
+    ResourceGraph,
+    ResourceId,
+    Robot,
+    RobotId,
+    Solution,
+)
 from carp_spec.shapes import Number, numbers_of
 from carproof.engines import Engine, engine_named
 from carproof.protocol.ops import OPS
@@ -72,6 +83,17 @@ class Case:
         visits = sum(len(plan.visits) for plan in self.solution.plans)
         late = sum(ticks for _, _, ticks in self.delays)
         return (len(self.instance.robots), len(graph.resources), len(graph.edges), visits, len(self.delays), late)
+
+    @property
+    def asked_robot(self) -> RobotId:
+        """The robot of a question about one."""
+        assert self.robot is not None  # noqa: S101 - a promise of ours
+        return self.robot
+
+    @property
+    def others(self) -> list[Plan]:
+        """The plans of the other robots."""
+        return [plan for plan in self.solution.plans if plan.robot != self.robot]
 
     @property
     def options(self) -> Neighbourhood:

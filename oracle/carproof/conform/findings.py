@@ -1,11 +1,11 @@
 """Faults of answers, and the rules of programs besides those of plans: `program/...`."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
-from carp_spec import RobotId, Rule
+from carp_spec import RobotId, Rule, Violation
 from carp_spec.rule import DESIGN, rule
 from carproof.input_rules import Code
 
@@ -52,6 +52,11 @@ class Fault(Exception):  # noqa: N818 - a program's fault, not an error of ours
 def wrong(rule: str, message: str) -> Finding:
     """A wrong answer."""
     return Finding(Category.WRONG_ANSWER, rule, message)
+
+
+def broken(violations: Iterable[Violation]) -> Iterator[Finding]:
+    """Plans that break rules, as wrong answers."""
+    return (wrong(violation.rule, violation.message) for violation in violations)
 
 
 @rule("program/alive", "A program answers until it is asked to stop, and then it ends with 0.", DESIGN)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import msgspec
 
 from carp_spec import Instance, Plan, Refusal, RobotId, Solution
+from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.documents.solutions import solution_document
 from carp_verify.bound.rules import ContradictionError
 from carp_verify.kernel import ask, request
@@ -51,15 +52,14 @@ class Audit:
         return not self.late and not self.undecided
 
 
-class Auditor:
-    """Compares plans with the best ones beside those committed so far."""
+class Beside:
+    """The best plans beside those committed so far: the planner is not trusted, and what it finds is checked."""
 
     def __init__(self, instance: Instance, engine: Engine) -> None:
         self._instance = instance
         self._certifier = engine.certifier(instance)
         self._traffic = Traffic(instance)
         self._committed: list[Plan] = []
-        self.audit = Audit()
 
     def commit(self, plan: Plan) -> None:
         """Commit a plan; the next ones are compared beside it."""
@@ -67,32 +67,58 @@ class Auditor:
         self._traffic.commit(plan)
         self._committed.append(plan)
 
-    def earlier_plan(self, plan: Plan, followed: Plan | None = None, now: int = 0) -> Plan | None:
-        """A plan that arrives earlier, of a robot that has followed a plan until now; without one this is certified."""
-        best, certificate = self._certifier.certify(plan.robot, followed, now)
-        if best is not None and best.visits[-1].enter < plan.visits[-1].enter:
-            if not self.has_room(best) or not plans_are_lawful(self._instance, [best]):
-                raise ContradictionError(f"an earlier plan was found for robot {plan.robot}, and it breaks a rule")
-            return best
-        if best is None or best.visits[-1].enter > plan.visits[-1].enter:
-            raise ContradictionError(f"robot {plan.robot} has a plan that was not found")
+    def has_room(self, plan: Plan) -> bool:
+        """Whether the committed plans leave room for the plan."""
+        return self._traffic.allows(plan.visits)
+
+    def best(
+        self, robot: RobotId, followed: Plan | None = None, now: int = 0
+    ) -> tuple[Plan | None, QueryCertificateDocument]:
+        """The best plan of a robot that has followed a plan until now, which breaks no rule, and a certificate."""
+        plan, certificate = self._certifier.certify(robot, followed, now)
+        if plan is not None and not (self.has_room(plan) and plans_are_lawful(self._instance, [plan])):
+            raise ContradictionError(f"the plan found for robot {robot} breaks a rule")
+        return plan, certificate
+
+    def require(self, certificate: QueryCertificateDocument, followed: Plan | None = None) -> None:
+        """Check a certificate; raises `Refusal` where that would take too long."""
         try:
             require_certificate(self._traffic, certificate, followed)
         except Refusal as refusal:
             if refusal.rule == size_fits.id:
                 raise
-            raise ContradictionError(f"the certificate of robot {plan.robot} was refused: {refusal}") from refusal
+            message = f"the certificate of robot {certificate.robot} was refused: {refusal}"
+            raise ContradictionError(message) from refusal
+
+
+class Auditor(Beside):
+    """Compares plans with the best ones beside those committed so far."""
+
+    def __init__(self, instance: Instance, engine: Engine) -> None:
+        super().__init__(instance, engine)
+        self.audit = Audit()
+
+    def earlier_plan(self, plan: Plan, followed: Plan | None = None, now: int = 0) -> Plan | None:
+        """A plan that arrives earlier, of a robot that has followed a plan until now; without one this is certified."""
+        best, certificate = self.best(plan.robot, followed, now)
+        if best is not None and best.visits[-1].enter < plan.visits[-1].enter:
+            return best
+        if best is None or best.visits[-1].enter > plan.visits[-1].enter:
+            raise ContradictionError(f"robot {plan.robot} has a plan that was not found")
+        self.require(certificate, followed)
         self.audit.certified.append(plan)
         self.audit.certificates.append(msgspec.Raw(msgspec.json.encode(certificate)))
         return None
 
-    def has_room(self, plan: Plan) -> bool:
-        """Whether the committed plans leave room for the plan."""
-        return self._traffic.allows(plan.visits)
-
     def is_late(self, plan: Plan, earlier: Plan) -> None:
         """Note that a plan is late."""
         self.audit.late.append(Late(plan, earlier, tuple(self._committed)))
+
+    def look_at(self, plan: Plan, followed: Plan | None = None, now: int = 0) -> None:
+        """Certify a plan, or note that it is late."""
+        earlier = self.earlier_plan(plan, followed, now)
+        if earlier is not None:
+            self.is_late(plan, earlier)
 
 
 def audit_in_order(
@@ -108,9 +134,7 @@ def audit_in_order(
         if not goes_on():
             auditor.audit.undecided.append(plan)
             continue
-        earlier = auditor.earlier_plan(plan)
-        if earlier is not None:
-            auditor.is_late(plan, earlier)
+        auditor.look_at(plan)
         auditor.commit(plan)
         advance()
     return auditor.audit
@@ -129,9 +153,7 @@ def audit_changes(
     followed = {plan.robot: plan for plan in before}
     for plan in in_order(solution):
         if plan.robot in changed:
-            earlier = auditor.earlier_plan(plan, followed.get(plan.robot), now)
-            if earlier is not None:
-                auditor.is_late(plan, earlier)
+            auditor.look_at(plan, followed.get(plan.robot), now)
         auditor.commit(plan)
     return auditor.audit
 

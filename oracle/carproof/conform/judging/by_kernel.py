@@ -54,31 +54,27 @@ def _agrees_on_plans(case: Case, answer: QueryDocument | Solution, level: Level,
 
 def _solution_with(case: Case, answer: QueryDocument) -> Solution:
     """The plans of the others, and the one that was found."""
-    assert case.robot is not None  # noqa: S101 - a promise of ours
-    others = [plan for plan in case.solution.plans if plan.robot != case.robot]
-    found = answer.plan_of(case.robot)
-    return Solution.of(case.instance, others if found is None else [*others, found])
+    found = answer.plan_of(case.asked_robot)
+    return Solution.of(case.instance, case.others if found is None else [*case.others, found])
 
 
 def _is_early(case: Case, answer: QueryDocument | Solution, level: Level) -> bool:
     """Whether no robot has a better plan; the kernel must accept the certificate, or the better plan."""
     instance = case.instance
     if isinstance(answer, QueryDocument):
-        assert case.robot is not None  # noqa: S101 - a promise of ours
-        asked = [case.robot]
-        plans = {case.robot: answer.plan_of(case.robot)}
-        committed = [plan for plan in case.solution.plans if plan.robot != case.robot]
-        followed = [plan for plan in case.solution.plans if plan.robot == case.robot]
+        asked = [case.asked_robot]
+        plans = {case.asked_robot: answer.plan_of(case.asked_robot)}
+        committed, own = case.others, case.solution.plan_of(case.asked_robot)
     else:
         asked = [*instance.robot] if isinstance(case.planner, Carp) else [*answer.order, *answer.unplanned]
         plans = dict.fromkeys(asked) | {plan.robot: plan for plan in answer.plans}
-        committed, followed = [], []
+        committed, own = [], None
     certifier = engine_for(instance).certifier(instance)
     certifier.commit(committed)
     requests, is_early = [], True
     for robot in asked:
-        best, certificate = certifier.certify(robot, followed[0] if followed else None, case.now)
-        before = solution_document(Solution.of(instance, [*committed, *followed]))
+        best, certificate = certifier.certify(robot, own, case.now)
+        before = solution_document(Solution.of(instance, committed if own is None else [*committed, own]))
         requests.append(request("verify-query", instance, solution=before, certificate=certificate))
         if best is not None:
             beside = solution_document(Solution.of(instance, [*committed, best]))

@@ -8,7 +8,7 @@ from carp_spec.execution.traces import Trace
 from carp_spec.plan_rules import least_stays
 from carproof.conform.answers import Skipped
 from carproof.conform.cases import Case
-from carproof.conform.findings import Fault, Finding, all_arrive, are_ready, wrong
+from carproof.conform.findings import Fault, Finding, all_arrive, are_ready, broken, wrong
 from carproof.conform.levels import Level
 from carproof.protocol.ops.executing import DriveDocument
 
@@ -91,11 +91,9 @@ def _collisions(instance: Instance, trace: Trace) -> Iterator[Violation]:
 
 def execution_findings(case: Case, trace: Trace, level: Level) -> Iterator[Finding]:
     """The faults of an execution; at `exact` it must keep the planned order too."""
-    for violation in _collisions(case.instance, trace):
-        yield wrong(violation.rule, violation.message)
+    yield from broken(_collisions(case.instance, trace))
     if level >= Level.EXACT:
-        for violation in trace_violations(case.instance, case.solution, trace, most=1):
-            yield wrong(violation.rule, violation.message)
+        yield from broken(trace_violations(case.instance, case.solution, trace, most=1))
     standing = _standing(case, trace)
     if not all_arrive(standing):
         many = f"robots {standing} stand" if standing[1:] else f"robot {standing[0]} stands"

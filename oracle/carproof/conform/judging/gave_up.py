@@ -58,10 +58,9 @@ def effort(case: Case, answer: Answer) -> Effort:
 
 def _planned(case: Case, has_plan: bool) -> Effort:
     """Whether the robot that is asked for has a plan."""
-    assert case.robot is not None  # noqa: S101 - a promise of ours
     if has_plan:
         return Effort.TRIED
-    best = engine_for(case.instance).query(case.instance, case.solution.plans, case.robot, case.now)
+    best = engine_for(case.instance).query(case.instance, case.solution.plans, case.asked_robot, case.now)
     return Effort.NOTHING_TO_DO if best is None else Effort.GAVE_UP
 
 

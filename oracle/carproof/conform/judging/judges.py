@@ -1,6 +1,7 @@
 """The demands of each level on an answer. A program is judged by its answer alone, not by its method."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 
 from carp_spec import (
     Carp,
@@ -21,15 +22,14 @@ from carp_spec.documents.verdicts import VerdictDocument, verdict_document
 from carp_spec.execution.traces import Trace
 from carp_spec.polish_rules import is_kept
 from carp_verify.bound.rules import ContradictionError
-from carp_verify.query.rules import plans_are_lawful, size_fits
-from carp_verify.query.verify import Traffic, require_certificate
 from carproof.command_line.output import shown_plan
 from carproof.conform.answers import Answer
-from carproof.conform.cases import POLISH_ROUNDS, Case, engine_for, is_large
-from carproof.conform.findings import Finding, wrong
+from carproof.conform.cases import POLISH_ROUNDS, Case, engine_for
+from carproof.conform.findings import Finding, broken, wrong
 from carproof.conform.judging.driving import execution_findings
 from carproof.conform.judging.optimum import bound_findings, complete_findings, optimum_findings, plan_cost_findings
 from carproof.conform.levels import Level
+from carproof.judging.audit import Beside
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops.planning import QueryDocument
 
@@ -59,68 +59,37 @@ def _findings(case: Case, answer: Answer, level: Level) -> Iterator[Finding]:
             yield from _plan_findings(case, answer, level)
 
 
-def _followed(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int) -> tuple[Plan, ...]:
-    """The plan that a robot has followed until now; a robot without a plan has stood at its start since its release."""
-    request = instance.robot[robot]
-    own = tuple(plan for plan in committed if plan.robot == robot)
-    standing = (Plan(robot, (Visit(request.start, request.release, None),)),) if request.release <= now else ()
-    return own or standing
+def _followed(case: Case) -> tuple[Plan, ...]:
+    """The plan that the robot has followed until now; one without a plan has stood at its start since its release."""
+    own, robot = case.solution.plan_of(case.asked_robot), case.instance.robot[case.asked_robot]
+    if own is not None:
+        return (own,)
+    return (Plan(robot.id, (Visit(robot.start, robot.release, None),)),) if robot.release <= case.now else ()
 
 
 def _query_findings(case: Case, answer: QueryDocument, level: Level) -> Iterator[Finding]:
-    assert case.robot is not None  # noqa: S101 - a promise of ours
-    plan = answer.plan_of(case.robot)
-    committed = case.solution.plans
-    others = [each for each in committed if each.robot != case.robot]
+    robot = case.asked_robot
+    plan = answer.plan_of(robot)
     if plan is not None:
-        before = _followed(case.instance, committed, case.robot, case.now)
-        for violation in (*violations_of(case.instance, (*others, plan)), *check_update(before, [plan], case.now)):
-            yield wrong(violation.rule, violation.message)
+        yield from broken(violations_of(case.instance, (*case.others, plan)))
+        yield from broken(check_update(_followed(case), [plan], case.now))
     if level >= Level.COMPLETE_IN_CONTEXT:
-        own = next((each for each in committed if each.robot == case.robot), None)
-        best = Beside(case.instance, others).best(case.robot, case.now, own)
-        yield from _against_best(case.instance, best, case.robot, plan, level)
+        beside = Beside(case.instance, engine_for(case.instance))
+        for each in case.others:
+            beside.commit(each)
+        best = _best(beside, robot, case.solution.plan_of(robot), case.now)
+        yield from _against_best(case.instance, best, robot, plan, level)
 
 
-class Beside:
-    """The best plans beside those that are committed.
-
-    Those of large instances are the compiled planner's. They count if they break no rule, and if `carp_verify` accepts
-    a certificate that no plan arrives earlier.
-    """
-
-    def __init__(self, instance: Instance, committed: Iterable[Plan] = ()) -> None:
-        self._instance = instance
-        self._committed: list[Plan] = []
-        self._certifier = engine_for(instance).certifier(instance) if is_large(instance) else None
-        self._traffic = Traffic(instance)
-        for plan in committed:
-            self.commit(plan)
-
-    def commit(self, plan: Plan) -> None:
-        """Commit one plan more."""
-        self._committed.append(plan)
-        if self._certifier is not None:
-            self._certifier.commit([plan])
-            self._traffic.commit(plan)
-
-    def best(self, robot: RobotId, now: int = 0, followed: Plan | None = None) -> Plan | None:
-        """The best plan of a robot that has followed a plan, if any, until now."""
-        if self._certifier is None:
-            committed = [*self._committed, *([] if followed is None else [followed])]
-            return engine_for(self._instance).query(self._instance, committed, robot, now)
-        plan, certificate = self._certifier.certify(robot, followed, now)
-        try:
-            require_certificate(self._traffic, certificate, followed)
-        except Refusal as refusal:
-            if refusal.rule != size_fits.id:
-                raise ContradictionError(f"the certificate of robot {robot} was refused: {refusal}") from refusal
-        arrival = None if plan is None else plan.visits[-1].enter
-        if plan is not None and not (plans_are_lawful(self._instance, [plan]) and self._traffic.allows(plan.visits)):
-            raise ContradictionError(f"the plan found for robot {robot} breaks a rule")
-        if certificate.bound != arrival:
-            raise ContradictionError(f"the plan of robot {robot} arrives at {arrival}, not at {certificate.bound}")
-        return plan
+def _best(beside: Beside, robot: RobotId, followed: Plan | None = None, now: int = 0) -> Plan | None:
+    """The best plan of a robot, which counts if it breaks no rule, and if its certificate is accepted."""
+    plan, certificate = beside.best(robot, followed, now)
+    with suppress(Refusal):  # it is too large to be checked
+        beside.require(certificate, followed)
+    arrival = None if plan is None else plan.visits[-1].enter
+    if certificate.bound != arrival:
+        raise ContradictionError(f"the plan of robot {robot} arrives at {arrival}, not at {certificate.bound}")
+    return plan
 
 
 def _against_best(
@@ -144,8 +113,7 @@ def _against_best(
 
 
 def _plan_findings(case: Case, solution: Solution, level: Level) -> Iterator[Finding]:
-    for violation in judge(case.instance, solution).violations:
-        yield wrong(violation.rule, violation.message)
+    yield from broken(judge(case.instance, solution).violations)
     if isinstance(case.planner, Carp):
         yield from _in_order_findings(case, solution, list(case.instance.robot), level)
     elif case.planner is None and level >= Level.COMPLETE:
@@ -164,10 +132,10 @@ def _in_order_findings(case: Case, solution: Solution, order: Sequence[RobotId],
     if level < Level.COMPLETE_IN_CONTEXT:
         return
     plans = {plan.robot: plan for plan in solution.plans}
-    beside = Beside(case.instance)
+    beside = Beside(case.instance, engine_for(case.instance))
     for robot in order:
         plan = plans.get(robot)
-        yield from _against_best(case.instance, beside.best(robot), robot, plan, level)
+        yield from _against_best(case.instance, _best(beside, robot), robot, plan, level)
         if plan is not None:
             beside.commit(plan)
 
@@ -183,29 +151,25 @@ def _same_solution(solution: Solution, expected: Solution, planner: str) -> Iter
 
 
 def _add_findings(case: Case, after: Solution, level: Level) -> Iterator[Finding]:
-    assert case.robot is not None  # noqa: S101 - a promise of ours
-    for violation in judge(case.instance, after).violations:
-        yield wrong(violation.rule, violation.message)
+    yield from broken(judge(case.instance, after).violations)
     before = case.solution.plans
     lost = {plan.robot for plan in before} - {plan.robot for plan in after.plans}
     for plan in before:
         if plan.robot in lost:
             yield wrong("fleet/history", f"robot {plan.robot} had a plan and has none now")
-    followed = (*before, *_followed(case.instance, before, case.robot, case.now))
-    for violation in check_update(followed, after.plans, case.now):
-        yield wrong(violation.rule, violation.message)
+    followed = (*before, *_followed(case))
+    yield from broken(check_update(followed, after.plans, case.now))
     if level >= Level.COMPLETE_IN_CONTEXT:
         yield from _against_keeping(case, after)
     if level >= Level.EXACT:
-        expected = engine_for(case.instance).add(case.instance, case.solution, case.robot, case.now, case.options)
+        expected = engine_for(case.instance).add(case.instance, case.solution, case.asked_robot, case.now, case.options)
         yield from _same_solution(after, expected, "add")
 
 
 def _against_keeping(case: Case, after: Solution) -> Iterator[Finding]:
     """With the baseline, adding a robot is no worse than keeping all plans and asking for one more."""
-    assert case.robot is not None  # noqa: S101 - a promise of ours
     kept = case.solution.plans
-    one_more = engine_for(case.instance).query(case.instance, kept, case.robot, case.now)
+    one_more = engine_for(case.instance).query(case.instance, kept, case.asked_robot, case.now)
     if one_more is None or not case.options.baseline:
         return
     if case.robot in after.unplanned:
@@ -218,8 +182,7 @@ def _against_keeping(case: Case, after: Solution) -> Iterator[Finding]:
 
 def _polish_findings(case: Case, after: Solution, level: Level) -> Iterator[Finding]:
     """A polished solution breaks no rule, leaves no more robots unplanned, and if as many, has no larger total."""
-    for violation in judge(case.instance, after).violations:
-        yield wrong(violation.rule, violation.message)
+    yield from broken(judge(case.instance, after).violations)
     (missing, total), (missing_before, total_before) = (worth(case, each.plans) for each in (after, case.solution))
     if not is_kept((missing_before, total_before), (missing, total)):
         given = f"the solution to polish leaves {missing_before} robots unplanned, with a total of {total_before}"
@@ -237,13 +200,13 @@ def worth(case: Case, plans: Sequence[Plan]) -> tuple[int, int]:
 def _check_findings(case: Case, verdict: VerdictDocument, level: Level) -> Iterator[Finding]:
     right = verdict_document(judge(case.instance, case.solution))
     named = list(dict.fromkeys(violation.rule for violation in verdict.violations))
-    broken = list(dict.fromkeys(violation.rule for violation in right.violations))
-    for rule in broken:
+    required = list(dict.fromkeys(violation.rule for violation in right.violations))
+    for rule in required:
         if rule not in named:
             message = next(violation.message for violation in right.violations if violation.rule == rule)
             yield wrong(rule, f"the verdict must report that it is broken: {message}")
     for rule in named:
-        if rule not in broken:
+        if rule not in required:
             yield wrong(rule, "the verdict must not report that it is broken")
     if verdict.valid != right.valid:
         yield wrong("program/result", f"valid must be {right.valid}, as the violations say")

@@ -7,7 +7,7 @@ from carp_spec import Instance, Refusal, Solution, judge, total_cost
 from carp_spec.documents.bounds import BoundDocument
 from carp_spec.documents.solutions import solution_of
 from carproof.conform.cases import OPTIMUM_SECONDS, engine_for, is_large
-from carproof.conform.findings import Finding, is_complete, is_lower, is_optimal, wrong
+from carproof.conform.findings import Finding, broken, is_complete, is_lower, is_optimal, wrong
 from carproof.conform.levels import Level
 from carproof.optima import OptimumDocument
 
@@ -37,8 +37,7 @@ def optimum_findings(instance: Instance, answer: OptimumDocument, level: Level) 
     """The fault of an answer to `optimum`, if any."""
     if answer.solution is not None:
         solution = solution_of(answer.solution)
-        for violation in judge(instance, solution).violations:
-            yield wrong(violation.rule, violation.message)
+        yield from broken(judge(instance, solution).violations)
         if solution.unplanned:
             yield wrong("solution/covers", f"an optimum has plans for all robots, also {solution.unplanned[0]}")
         total = total_cost(instance, solution.plans)
