@@ -93,8 +93,7 @@ def _told(report: "Report", folder: Path) -> str:
         reasons = [*(fault.message for fault in report.faults), *report.shortfalls]
         return "\n".join([head, *(reasons or ["no random case decided it"])])
     smallest, *others = report.failures
-    finding, instance = smallest.finding, smallest.case.instance
-    assert finding is not None  # noqa: S101 - a failure has a finding
+    finding, instance = smallest.fault, smallest.case.instance
     size = f"{counted(len(instance.robots), 'robot')} and {counted(len(instance.graph.resources), 'resource')}"
     lines = [
         head,

@@ -118,10 +118,13 @@ def test_a_program_that_fails_at_start_does_not_conform(how: str) -> None:
 
 
 def test_a_second_line_is_an_answer_that_nobody_asked_for() -> None:
-    with Child([sys.executable, "-IS", "-c", "input(); print('one\\ntwo')"], LIMITS) as child:
+    child = Child([sys.executable, "-IS", "-c", "input(); print('one\\ntwo')"], LIMITS)
+    try:
         assert child.ask(b"?\n", GENEROUS) == b"one"
         with pytest.raises(Fault, match="more than one line"):
             child.ask(b"?\n", GENEROUS)
+    finally:
+        child.kill()
 
 
 def test_a_run_gives_up_after_a_few_lost_processes() -> None:

@@ -39,16 +39,12 @@ def conforms(  # noqa: PLR0913 - the options of the command
     the smallest cases found. Raises `Refusal` for an unknown level or feature.
     """
     require("hypothesis", "pysat")
-    _require_known("level", [level], [each.label for each in WHOLE_LEVELS])
-    _require_known("without", without, [*FEATURES])
+    levels = [each.label for each in WHOLE_LEVELS]
+    for option, each, known in (("level", level, levels), *(("without", each, [*FEATURES]) for each in without)):
+        if each not in known:
+            message = f"it must be one of {', '.join(known)}, not {each!r}"
+            raise Refusal("option", f"$.{option}", RIGHT_QUESTIONS.id, message)
     name = getattr(planner, "__name__", type(planner).__name__)
     claims = Claims(frozenset(without), solvable, groups, stops)
     options = Options(LEVELS[level], examples, seed, whole=True, claims=claims, large=large)
     return conform(Function(planner, name, documents), options, saved=saved)
-
-
-def _require_known(option: str, given: Collection[str], known: Sequence[str]) -> None:
-    for each in given:
-        if each not in known:
-            message = f"it must be one of {', '.join(known)}, not {each!r}"
-            raise Refusal("option", f"$.{option}", RIGHT_QUESTIONS.id, message)

@@ -105,7 +105,7 @@ class Report:
     @property
     def findings(self) -> list[Finding]:
         """All findings."""
-        return [*self.faults, *(outcome.finding for outcome in self.failures if outcome.finding is not None)]
+        return [*self.faults, *(outcome.fault for outcome in self.failures)]
 
     @property
     def processes_lost(self) -> int:
@@ -129,15 +129,11 @@ class Report:
             return []
         ops = self.options.ops
         if not any(outcome.case.op in ops for outcome in self.outcomes) and not any(op in self.tallies for op in ops):
-            return [self._nothing_offered]
+            level, lower = self.options.level, Level.COMPLETE_IN_CONTEXT
+            other = f" (level {lower.label}: {' or '.join(JUDGED_OPS[lower])})" if level == Level.COMPLETE else ""
+            offer = f"its answer to start must name {' or '.join(ops)}{other}"
+            return [f"it offers nothing that shows the level {level.label}: {offer}"]
         return [*smoke_shortfalls(self.outcomes), *random_shortfalls(self.tallies)]
-
-    @property
-    def _nothing_offered(self) -> str:
-        level, lower = self.options.level, Level.COMPLETE_IN_CONTEXT
-        offer = f"its answer to start must name {' or '.join(self.options.ops)}"
-        other = f" (level {lower.label}: {' or '.join(JUDGED_OPS[lower])})" if level == Level.COMPLETE else ""
-        return f"it offers nothing that shows the level {level.label}: {offer}{other}"
 
     @property
     def tested(self) -> int:

@@ -96,23 +96,19 @@ class FailureSearch:
 
     def _fails_alike(self, case: Case) -> bool:
         assert self._first is not None  # noqa: S101 - a promise of ours
-        assert self._first.finding is not None  # noqa: S101
-        outcome = self._ask(case, self._seconds())
-        if outcome.finding is None or outcome.finding.key != self._first.finding.key:
+        # The time is short for a program that is slow only where it fails.
+        outcome = self._ask(case, min(self._limit, max(_LEAST_SECONDS, _PATIENCE * self._slowest)))
+        if outcome.finding is None or outcome.finding.key != self._first.fault.key:
             return False
         if self.best is None or case.size <= self.best.case.size:
             self.best = outcome
         return True
 
-    def _seconds(self) -> float | None:
-        """The time limit while shrinking: short for a program that is slow only where it fails."""
-        return min(self._limit, max(_LEAST_SECONDS, _PATIENCE * self._slowest))
-
     def _confirm(self) -> None:
         """Ask the smallest case that took too long once more, with the full time limit."""
-        if self.best is None or self.best.finding is None or self.best.finding.category != Category.TIMEOUT:
+        if self.best is None or self.best.fault.category != Category.TIMEOUT:
             return
         again = self._ask(self.best.case, None)
-        alike = again.finding is not None and again.finding.key == self.best.finding.key
+        alike = again.finding is not None and again.finding.key == self.best.fault.key
         self.best = again if alike else self._first
         self.minimal = self.minimal and alike

@@ -305,10 +305,8 @@ def _show(report: "Report", saved: Sequence[Path]) -> None:
     for fault in report.faults:
         print_line(f"{fault.category}: {fault.message} [{fault.rule}]")
     for outcome in report.failures:
-        assert outcome.finding is not None  # noqa: S101 - a failure has a finding
-        instance = outcome.case.instance
+        finding, instance = outcome.fault, outcome.case.instance
         size = f"{counted(len(instance.robots), 'robot')}, {counted(len(instance.graph.resources), 'resource')}"
-        finding = outcome.finding
         print_line(f"{finding.category} ({outcome.case.name}; {size}): {finding.message} [{finding.rule}]")
     for shortfall in report.shortfalls:
         print_line(f"too few answers: {shortfall}")

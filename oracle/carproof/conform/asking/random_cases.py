@@ -57,8 +57,6 @@ EXACT_PLANNERS: tuple[Planner, ...] = (
     TimeExpanded(),
 )
 ADDING = tuple(planner for planner in EXACT_PLANNERS if isinstance(planner, Neighbourhood))
-
-
 Edges: TypeAlias = tuple[tuple[int, int], ...]
 SHAPES: tuple[Edges, ...] = (
     ((0, 1), (1, 2)),
@@ -69,8 +67,6 @@ SHAPES: tuple[Edges, ...] = (
     ((0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5)),
 )
 """Edges of small maps: two rows of cells, a triangle, a row with a place to pass, a ring, a grid."""
-
-
 CORRIDOR: Edges = ((0, 4), (1, 5), (2, 4), (3, 5), (4, 5))
 """A corridor from 4 to 5; two places are at each end."""
 
@@ -142,10 +138,10 @@ def _additions(draw: st.DrawFn, sizes: Sizes, under_way: bool) -> Case:
 
 
 @st.composite
-def _polishes(draw: st.DrawFn, sizes: Sizes) -> Case:
+def _solved(draw: st.DrawFn, op: str, sizes: Sizes) -> Case:
     """Plans of some or all robots, most of them slower than they must be."""
     instance = draw(_instances(sizes))
-    return Case("random", "polish", "polish", instance, draw(solutions(instance, sizes)))
+    return Case("random", op, op, instance, draw(solutions(instance, sizes)))
 
 
 @st.composite
@@ -153,8 +149,7 @@ def _checks(draw: st.DrawFn, sizes: Sizes) -> Case:
     if draw(st.booleans()):
         broken = draw(broken_solutions(sizes))
         return Case("random", "check", "check", broken.instance, broken.solution)
-    instance = draw(_instances(sizes))
-    return Case("random", "check", "check", instance, draw(solutions(instance, sizes)))
+    return draw(_solved("check", sizes))
 
 
 @st.composite
@@ -199,7 +194,7 @@ def random_cases(
         "plan": _plans(planners, sizes),
         "add": _additions(sizes, under_way),
         "check": _checks(sizes),
-        "polish": _polishes(sizes),
+        "polish": _solved("polish", sizes),
         "bound": small.map(lambda instance: Case("random", "bound", "bound", instance)),
     }
     if level >= Level.COMPLETE:

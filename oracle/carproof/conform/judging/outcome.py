@@ -30,16 +30,19 @@ class Outcome:
     seconds: float = 0.0
 
     @property
+    def fault(self) -> Finding:
+        """The fault of a failure."""
+        assert self.finding is not None  # noqa: S101 - a failure has one
+        return self.finding
+
+    @property
     def is_judged(self) -> bool:
         """Whether the case was answered, rightly or wrongly."""
         return self.skipped is None
 
     def subsumes(self, other: "Outcome") -> bool:
         """Same rule and category, and at least this failure's features."""
-        assert self.finding is not None  # noqa: S101 - both are failures
-        assert other.finding is not None  # noqa: S101
-        is_alike = self.finding.key == other.finding.key
-        return is_alike and features(self.case) <= features(other.case)
+        return self.fault.key == other.fault.key and features(self.case) <= features(other.case)
 
 
 def ask(subject: Subject, case: Case, level: Level, seconds: float | None = None, by_kernel: bool = False) -> Outcome:

@@ -11,8 +11,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic, sleep
-from types import TracebackType
-from typing import IO, Self, cast
+from typing import IO, cast
 
 from carproof.conform.findings import IN_TIME, Category, Fault, Finding, is_alive, is_response
 
@@ -91,7 +90,7 @@ def ending(code: int) -> str:
 
 
 class Child:
-    """A process that stays up; use it as a context, or call `kill`."""
+    """A process that stays up until `kill`."""
 
     def __init__(self, command: Sequence[str], limits: Limits) -> None:
         self._limits = limits
@@ -111,16 +110,6 @@ class Child:
             os.set_blocking(pipe.fileno(), False)
         self._output = bytearray()
         self._errors = bytearray()
-
-    def __enter__(self) -> Self:
-        """Nothing is to do."""
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """End the process in any case."""
-        self.kill()
 
     def kill(self) -> None:
         """End the process and all that it started."""

@@ -2,9 +2,9 @@
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import asdict
 from itertools import zip_longest
 from pathlib import Path
-from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import msgspec
@@ -28,15 +28,14 @@ def counts(report: Report) -> dict[str, Counter[str]]:
 
 def report_document(report: Report, saved: Sequence[Path]) -> bytes:
     """The report as one JSON document; `saved` are the folders of the failures."""
-    failures = [_finding_fields(finding) for finding in report.faults]
+    failures = [asdict(finding) for finding in report.faults]
     for outcome, folder in zip_longest(report.failures, saved):
-        assert outcome.finding is not None  # noqa: S101 - a failure has a finding
         case = outcome.case
         sizes = {"robots": len(case.instance.robots), "resources": len(case.instance.graph.resources)}
         asked = {"stage": case.stage, "case": case.name, "op": case.op, **sizes}
         asked |= {} if folder is None else {"folder": str(folder)}
         asked |= {"minimal": report.minimal} if outcome is report.smallest else {}
-        failures.append({**_finding_fields(outcome.finding), **asked})
+        failures.append({**asdict(outcome.fault), **asked})
     random = {op: _tally_fields(tally) for op, tally in report.tallies.items()}
     document = {
         "format": FORMAT,
@@ -64,15 +63,6 @@ def report_document(report: Report, saved: Sequence[Path]) -> bytes:
 
 def _tally_fields(tally: Tally) -> dict[str, int]:
     return {"asked": tally.asked, "answered": tally.answered, "gave_up": tally.gave_up}
-
-
-def _finding_fields(finding: Finding) -> dict[str, Any]:
-    return {
-        "category": finding.category.value,
-        "rule": finding.rule,
-        "message": finding.message,
-        "stderr": finding.stderr,
-    }
 
 
 def junit_document(report: Report, saved: Sequence[Path]) -> bytes:

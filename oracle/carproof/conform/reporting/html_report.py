@@ -32,9 +32,8 @@ def html_document(report: Report, saved: Sequence[Path], origin: Origin) -> byte
     level = report.options.level
     failures = [_failure(*each, origin) for each in zip_longest(report.failures, saved)]
     found = [*map(_fault, report.faults), *failures, *(f"<p>{escape(each)}</p>" for each in report.shortfalls)]
-    filled_in = Template(
-        files("carproof.conform.reporting").joinpath("report.html").read_text(encoding="utf-8")
-    ).substitute(
+    page = Template(files("carproof.conform.reporting").joinpath("report.html").read_text(encoding="utf-8"))
+    filled_in = page.substitute(
         policy=POLICY,
         colours=variables(),
         title=escape(f"{report.program}: level {level.label}"),
@@ -84,9 +83,7 @@ def _fault(finding: Finding) -> str:
 
 
 def _failure(outcome: Outcome, folder: Path | None, origin: Origin) -> str:
-    finding, case = outcome.finding, outcome.case
-    assert finding is not None  # noqa: S101 - a failure has a finding
-    instance = case.instance
+    finding, case, instance = outcome.fault, outcome.case, outcome.case.instance
     size = f"{counted(len(instance.robots), 'robot')}, {counted(len(instance.graph.resources), 'resource')}"
     entries = {**_explained(finding), "about the case": about_case(case)}
     if folder is not None:

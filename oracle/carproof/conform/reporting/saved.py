@@ -100,8 +100,7 @@ def save_all(failures: Sequence[Outcome], folder: Path, origin: Origin) -> list[
 
 
 def _name(number: int, outcome: Outcome) -> str:
-    assert outcome.finding is not None  # noqa: S101 - a failure has a finding
-    return "." if number == 1 else f"{number}-{outcome.finding.rule.replace('/', '-')}"
+    return "." if number == 1 else f"{number}-{outcome.fault.rule.replace('/', '-')}"
 
 
 def clear(folder: Path) -> None:

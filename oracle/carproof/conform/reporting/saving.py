@@ -9,7 +9,7 @@ from xml.sax.saxutils import escape
 import click
 import msgspec
 
-from carp_spec import Refusal, Solution, violations_of
+from carp_spec import Carp, Refusal, Solution, judge, plan_cost, violations_of
 from carp_spec.documents.instances import instance_document, write_instance
 from carp_spec.documents.solutions import solution_of, write_solution
 from carp_spec.execution.traces import Trace
@@ -20,6 +20,7 @@ from carproof.conform.judging.claims import features
 from carproof.conform.judging.outcome import Outcome
 from carproof.conform.reporting.advice import advice_for
 from carproof.conform.reporting.drawing import drawing, map_drawing
+from carproof.engines import engine_named
 from carproof.formats.movingai_writer import MAP_NAME, write_movingai
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops.op import made
@@ -69,12 +70,12 @@ def save(outcome: Outcome, folder: Path, origin: Origin = Origin()) -> None:
     files = {
         "finding.txt": _finding_text(outcome, folder, origin).encode(),
         "map.txt": map_drawing(case.instance).encode(),
-        "map.svg": _drawn(lambda: view_map(case.instance, judged, at=_first_tick(outcome), title=_title(outcome))),
+        "map.svg": _drawn(lambda: view_map(case.instance, judged, at=_first_tick(outcome), title=outcome.fault.rule)),
         "instance.json": write_instance(case.instance),
         "request.json": msgspec.json.encode({"id": 1, "op": case.op, **request_fields(case)}) + b"\n",
         "vector.json": msgspec.json.format(msgspec.json.encode(vectors_document(outcome))) + b"\n",
         "picture.txt": picture_of(outcome).encode(),
-        "picture.svg": _drawn(lambda: view_chart(case.instance, judged, title=_title(outcome))),
+        "picture.svg": _drawn(lambda: view_chart(case.instance, judged, title=outcome.fault.rule)),
         "solution.json": write_solution(judged),
     }
     if case.classical:
@@ -95,11 +96,6 @@ def _drawn(draw: Callable[[], bytes]) -> bytes:
         return draw()
     except Refusal as refusal:
         return NO_PICTURE.format(escape(refusal.message)).encode()
-
-
-def _title(outcome: Outcome) -> str:
-    assert outcome.finding is not None  # noqa: S101 - only failures are saved
-    return outcome.finding.rule
 
 
 def _first_tick(outcome: Outcome) -> int:
@@ -130,8 +126,7 @@ def judged_solution(outcome: Outcome) -> Solution:
 
 
 def _finding_text(outcome: Outcome, folder: Path, origin: Origin) -> str:
-    finding, case = outcome.finding, outcome.case
-    assert finding is not None  # noqa: S101 - only failures are saved
+    finding, case = outcome.fault, outcome.case
     statement = next((rule.statement for rule in ALL_RULES if rule.id == finding.rule), "")
     asked = "" if case.robot is None else f" of robot {case.robot} at tick {case.now}"
     lines = [
@@ -167,8 +162,7 @@ def about_case(case: Case) -> str:
 
 def vectors_document(outcome: Outcome) -> dict[str, Any]:
     """The failure as a file of one test vector; the program's answer is its claim."""
-    finding, case = outcome.finding, outcome.case
-    assert finding is not None  # noqa: S101 - only failures are saved
+    finding, case = outcome.fault, outcome.case
     vector = {
         "id": f"{finding.rule}/found",
         "op": case.op,
@@ -191,9 +185,6 @@ def claim(answer: Answer) -> dict[str, Any]:
 
 def right_answer(case: Case) -> dict[str, Any]:
     """The right answer, as far as vectors have it."""
-    from carp_spec import Carp, judge, plan_cost  # noqa: PLC0415
-    from carproof.engines import engine_named  # noqa: PLC0415 - only failures need it
-
     engine = engine_named("reference")
     if case.op == "query" and case.robot is not None:
         plan = engine.query(case.instance, case.solution.plans, case.robot, case.now)
