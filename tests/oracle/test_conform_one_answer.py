@@ -153,6 +153,11 @@ PLANS: Sequence[Row] = (
         {Level.OPTIMAL: "program/optimal"},
     ),
     (replace(case("plan", BLOCKED), classical=True), committed(BLOCKED, first=FIRST_GOES), {}),
+    (
+        replace(case("plan", FOUR), classical=True),
+        committed(FOUR, first=[("a", 0, 1)]),
+        {Level.COMPLETE: "program/complete"},
+    ),
 )
 ADD = case("add", BEHIND, planner=Neighbourhood(), first=FIRST_GOES)
 ADD_ANYHOW = replace(ADD, planner=Neighbourhood(baseline=False))
