@@ -8,9 +8,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from msgspec import structs
+from tests.oracle.test_conform_judges import Tampered, as_it_is
 
 from carp_spec import Carp, Instance, Plan, Resource, Robot, Solution, Visit
-from carproof.conform.answers import Answer, Reply, Subject
+from carproof.conform.answers import Answer, Reply
 from carproof.conform.cases import Case, request_of
 from carproof.conform.judging.claims import EVERYTHING, Claims
 from carproof.conform.levels import Level
@@ -41,14 +42,12 @@ class Bug:
     claims: Claims = EVERYTHING
 
 
-class Planted(Subject):
+class Planted(Tampered):
     """A planner that is right but for a bug."""
 
-    name = "planted"
-
     def __init__(self, bug: Bug) -> None:
+        super().__init__(as_it_is, (bug.op,))
         self.bug = bug
-        self.ops = (bug.op,)
 
     def ask(self, case: Case, seconds: float | None = None) -> Reply:
         del seconds
@@ -62,7 +61,7 @@ def alone(case: Case) -> Solution:
 
 
 def believing(
-    resource: Callable[[Resource], Resource], robot: Callable[[Robot], Robot]
+    resource: Callable[[Resource], Resource] = lambda each: each, robot: Callable[[Robot], Robot] = lambda each: each
 ) -> Callable[[Case], Reply | None]:
     """Plans of an instance whose resources and robots are taken for others."""
 
@@ -78,12 +77,8 @@ def believing(
     return answer
 
 
-def ends(solution: Solution) -> int:
-    return max((plan.visits[-1].enter for plan in solution.plans), default=0)
-
-
-def late_collisions(case: Case) -> Reply | None:
-    return alone(case) if ends(rightly_planned(case)) >= BIT_15 else None
+def makespan(case: Case) -> int:
+    return max((plan.visits[-1].enter for plan in rightly_planned(case).plans), default=0)
 
 
 def rightly_planned(case: Case) -> Solution:
@@ -164,6 +159,10 @@ def early(robot: Robot) -> Robot:
     return replace(robot, release=min(robot.release, 10**5))
 
 
+def hasty(robot: Robot) -> Robot:
+    return replace(robot, pace=min(robot.pace, 3))
+
+
 def short_services(robot: Robot) -> Robot:
     return replace(robot, stops=tuple(replace(stop, service=min(stop.service, 5)) for stop in robot.stops))
 
@@ -195,15 +194,11 @@ def any_order(case: Case) -> Reply:
 
 
 def capacities_beyond(most: int) -> Callable[[Case], Reply | None]:
-    return believing(lambda each: replace(each, capacity=10**6) if each.capacity > most else each, lambda each: each)
+    return believing(resource=lambda each: replace(each, capacity=10**6) if each.capacity > most else each)
 
 
 def durations_up_to(most: int) -> Callable[[Case], Reply | None]:
-    return believing(lambda each: replace(each, duration=min(each.duration, most)), lambda each: each)
-
-
-def robots_are(change: Callable[[Robot], Robot]) -> Callable[[Case], Reply | None]:
-    return believing(lambda each: each, change)
+    return believing(resource=lambda each: replace(each, duration=min(each.duration, most)))
 
 
 BUDGETS = (0.0, 1.0, 3.0, 10.0, 30.0, 100.0)
@@ -220,15 +215,15 @@ BUGS: Sequence[Bug] = (
     Bug("capacities are unlimited", "capacity 10", "plan", SOUND, capacities_beyond(10)),
     Bug("durations are cut", "duration 9", "plan", SOUND, durations_up_to(9)),
     Bug("durations are cut", "duration 255", "plan", SOUND, durations_up_to(255)),
-    Bug("paces are cut", "pace 3", "plan", SOUND, robots_are(lambda robot: replace(robot, pace=min(robot.pace, 3)))),
-    Bug("releases are cut", "tick 100,000", "plan", SOUND, robots_are(early)),
-    Bug("no collision check", "tick 32,767", "plan", SOUND, late_collisions),
+    Bug("paces are cut", "pace 3", "plan", SOUND, believing(robot=hasty)),
+    Bug("releases are cut", "tick 100,000", "plan", SOUND, believing(robot=early)),
+    Bug("no collision check", "tick 32,767", "plan", SOUND, beyond(makespan, BIT_15 - 1, alone)),
     Bug("ticks have 16 bits", "tick 32,767", "plan", SOUND, short_ticks),
     Bug("ids have 32 bits", "id 2^31", "plan", SOUND, short_ids),
     Bug("the others are forgotten", "20 robots", "add", SOUND, beyond(robots, 20, others_lost)),
     Bug("the search ends", "500 ticks", "query", Level.COMPLETE_IN_CONTEXT, gives_up_late),
     Bug("a tick too late", "40 plans", "query", OPTIMAL, waits),
-    Bug("services are cut", "service 5", "plan", SOUND, robots_are(short_services), Claims(stops=True)),
+    Bug("services are cut", "service 5", "plan", SOUND, believing(robot=short_services), Claims(stops=True)),
     Bug("another order", "50 robots", "plan", Level.EXACT, beyond(robots, 50, any_order)),
 )
 

@@ -38,6 +38,7 @@ class Tampered(Subject):
         self.name = "tampered"
         self.ops = ops
         self.tamper = tamper
+        self.killed = False
         self.cases: list[Case] = []
         self.asked: Counter[str] = Counter()
 
@@ -46,6 +47,9 @@ class Tampered(Subject):
         self.asked[case.op] += 1
         self.cases.append(case)
         return self.tamper(case, right_reply(case))
+
+    def kill(self) -> None:
+        self.killed = True
 
 
 def run(tamper: Tamper, level: Level, ops: tuple[str, ...] = ASKED_OPS, examples: int = 40) -> Report:
@@ -100,6 +104,16 @@ def test_a_program_that_is_wrong_only_now_and_then_is_refused_all_the_same() -> 
     subject.tamper = lambda case, reply: no_plan(case, reply) if subject.asked["query"] % 29 == 0 else reply
     report = conform(subject, Options(Level.COMPLETE_IN_CONTEXT, examples=200, shrink_seconds=1))
     assert report.conforms is False
+
+
+def interrupts(*_: object) -> Reply:
+    raise KeyboardInterrupt
+
+
+def test_an_interruption_leaves_undecided_and_ends_the_subject() -> None:
+    subject = Tampered(interrupts)
+    report = conform(subject, Options())
+    assert (report.interrupted, report.conforms, subject.killed) == (True, None, True)
 
 
 def test_a_failure_is_saved_as_a_vector_that_asks_it_again(tmp_path: Path) -> None:

@@ -53,13 +53,6 @@ def best(made: FailureSearch) -> tuple[int, Finding | None]:
     return len(made.best.case.instance.robots), made.best.finding
 
 
-def test_where_nothing_fails_each_case_is_asked_with_all_the_time_and_none_is_found() -> None:
-    asked = Asked(lambda _: None)
-    assert search(asked, examples=10).best is None
-    assert 5 <= len(asked.robots) <= 10
-    assert set(asked.limits) == {None}
-
-
 @pytest.mark.parametrize("least", [0, 1, 3])
 def test_the_smallest_case_that_fails_is_found(least: int) -> None:
     asked = Asked(lambda robots: JUMPS if robots >= least else None)

@@ -10,11 +10,11 @@ from tests.oracle.running import Document, Run, line, save, solution, town
 from tests.oracle.viewing import SVG, picture_of
 from tests.profiles import draws
 
-from carp_spec import Solution, check_update, judge, violations_of
-from carp_spec.execution.execution_rules import is_acyclic, trace_violations
+from carp_spec import Solution, check_update, judge
+from carp_spec.execution.execution_rules import is_acyclic
 from carproof import Delay, read_instance, read_solution
 from carproof.engines import engine_named
-from carproof.execution.simulation import execute, random_delays
+from carproof.execution.simulation import execute
 from carproof.execution.untangling import untangle
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
@@ -169,21 +169,6 @@ def test_untangled_plans_are_lawful_and_can_be_followed_in_order(case: PlannedIn
     if not found.rotation:
         assert not list(is_acyclic(case.instance, found.solution))
         assert judge(case.instance, found.solution).cost == judge(case.instance, case.solution).cost + found.extra
-
-
-@settings(max_examples=draws(60), deadline=None)
-@given(planned_instances(SIZES))
-def test_who_switches_follows_the_order_that_came_of_it(case: PlannedInstance) -> None:
-    instance, solution = case.instance, case.solution
-    delays = random_delays(solution, 300_000, 5, 1)
-    switching = execute(instance, solution, "switching", delays)
-    if switching.standing:
-        return
-    assert not trace_violations(instance, switching.followed, switching.trace)
-    assert not {each.rule for each in violations_of(instance, switching.trace.plans)} & {
-        "joint/capacity",
-        "joint/exchange",
-    }
 
 
 def test_nobody_switches_to_park_in_the_way() -> None:

@@ -4,9 +4,7 @@ import json
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations, pairwise
-from math import dist
 from pathlib import Path
-from random import Random
 
 import pytest
 from hypothesis import given
@@ -66,20 +64,6 @@ def kept_apart(made: Instance, size: Footprint) -> Pairs:
     return kept
 
 
-@pytest.mark.parametrize("seed", range(8))
-def test_so_it_is_of_many_small_roadmaps(seed: int) -> None:
-    """Quicker, as no shape is split by headings; with so small numbers, many touch."""
-    random = Random(seed)  # noqa: S311 - no secret
-    for _ in range(12):
-        least, most = random.choice(((0, 3), (0, 12), (-20, -8)))
-        spots = [(random.randint(least, most), random.randint(least, most)) for _ in range(12)]
-        lanes = {ends: None for ends in zip(spots[::2], spots[1::2], strict=True) if dist(*ends) >= 2}
-        length, width = random.choices(range(1, 10), k=2)
-        size = Footprint(length, length, round=True) if random.random() < 1 / 3 else Footprint(length, width)
-        if lanes:
-            kept_apart(plant([*lanes], both=random.random() < 1 / 2, footprint=size), size)
-
-
 def floor(places: dict[str, Place], *ways: str) -> Instance:
     """Resources at these places, and edges along the ways, such as `a ab b`."""
     resources = tuple(Resource(name, 9, 1, x, y) for name, (x, y) in places.items())
@@ -123,21 +107,6 @@ def test_lanes_are_known_from_the_ends_of_a_row_on(ways: tuple[str, ...]) -> Non
         assert point in near_to("t", SMALL, ROW | {"t": (ROW[point][0], 7 + 399)}, *ways)
 
 
-RING = {"a": (0, 0), "b": (2000, 0), "c": (2000, 2000), "d": (0, 2000)}
-LANES = {"ab": (1000, 0), "bc": (2000, 1000), "cd": (1000, 2000), "da": (0, 1000)}
-
-
-@pytest.mark.parametrize("ways", ["a ab b bc c cd d da a", "a da d cd c bc b ab a"])
-def test_the_corners_of_a_ring_are_discs(ways: str) -> None:
-    ends = {" ".join(sorted((end, lane))) for lane in LANES for end in lane}
-    assert near(SMALL, RING | LANES, ways) == {*ends, "ab bc", "bc cd", "cd da", "ab da"}
-    for corner, (x, y) in RING.items():
-        beside = (x + (300 if x else -300), y + (400 if y else -400))
-        assert near_to("t", SMALL, RING | LANES | {"t": beside}, ways) == set()
-        nearer = (beside[0], beside[1] + (-1 if y else 1))
-        assert corner in near_to("t", SMALL, RING | LANES | {"t": nearer}, ways)
-
-
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize(("ways", "turns"), [(("w we e", "i ie e"), False), (("w we e", "i ie e", "e en n"), True)])
 def test_a_point_is_a_disc_where_one_lane_of_several_leaves_the_line(
@@ -163,11 +132,6 @@ def test_a_lane_is_at_the_middle_of_its_ends_rounded_down(end: Place) -> None:
     for off in ((1, 0), (-1, 0), (0, 1), (0, -1)):
         with pytest.raises(Refusal, match="footprint/lanes"):
             near(SMALL, {"a": (0, 0), "b": end, "ab": (middle[0] + off[0], middle[1] + off[1])}, "a ab b")
-
-
-def test_lanes_that_cross_fill_the_same_box() -> None:
-    places = {"a": (0, 0), "b": (2000, 2000), "c": (0, 2000), "d": (2000, 0), "ab": (1000, 1000), "cd": (1000, 1000)}
-    assert near(SMALL, places, "a ab b", "c cd d") == {"a ab", "ab b", "c cd", "cd d", "ab cd"}
 
 
 def test_meetings_come_in_the_order_of_time_and_the_first_are_kept() -> None:

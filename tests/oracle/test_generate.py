@@ -1,5 +1,7 @@
 """The paper's maps, warehouses and fleets: shape, nesting, and equal results for equal seeds."""
 
+from hashlib import sha256
+
 import networkx as nx
 import pytest
 from hypothesis import given
@@ -104,17 +106,4 @@ def test_the_same_options_give_the_same_document_for_ever(carproof: Run) -> None
     arguments = (
         "generate grid --width 3 --height 2 --map 10 --map-seed 5 --seed 7 --robots 2 --duration 1..2 --pace 1..2"
     )
-    assert carproof(*arguments.split()).stdout == PINNED
-
-
-PINNED = (
-    '{"format":"carproof-instance/1","graph":{"nodes":[{"id":"0,0","capacity":1,"duration":1,"x":0,"y":0},{"id'
-    '":"1,0","capacity":1,"duration":2,"x":1,"y":0},{"id":"2,0","capacity":1,"duration":2,"x":2,"y":0},{"id":"'
-    '0,1","capacity":1,"duration":1,"x":0,"y":1},{"id":"1,1","capacity":1,"duration":2,"x":1,"y":1},{"id":"2,1'
-    '","capacity":1,"duration":2,"x":2,"y":1}],"edges":[{"source":"0,0","target":"1,0"},{"source":"0,0","targe'
-    't":"0,1"},{"source":"1,0","target":"2,0"},{"source":"1,0","target":"1,1"},{"source":"2,0","target":"2,1"}'
-    ',{"source":"0,1","target":"1,1"}],"directed":false,"multigraph":false},"after_goal":"vanish","robots":[{"'
-    'id":"r1","start":"1,0","goal":"0,0","release":0,"pace":2},{"id":"r2","start":"2,1","goal":"1,0","release"'
-    ':0,"pace":1}]}'
-    "\n"
-)
+    assert sha256(carproof(arguments).stdout.encode()).hexdigest()[:16] == "d02c1052c5ddf742"
