@@ -114,10 +114,6 @@ def test_a_large_failure_is_shrunk_to_the_number_beyond_which_it_shows() -> None
     assert (robot.release, robot.start == robot.goal, report.minimal) == (100_001, True, True)
 
 
-def test_without_time_a_failure_is_not_called_minimal() -> None:
-    assert not run(ARRIVES_ONLY, 0.0, examples=100, shrinking=0.0).minimal
-
-
 UNTIDY = """
 import json, os, pathlib, sys
 from carp_spec.documents.instances import read_instance

@@ -2,7 +2,7 @@
 
 import os
 import subprocess
-from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -59,11 +59,8 @@ def test_saved_cases_are_read_as_they_were_asked(tmp_path: Path, whole: bool) ->
     save_all([Outcome(case, wrong("plan/move", "it is wrong"), NOBODY) for case in one_of_each], tmp_path, ORIGIN)
     read = read_saved(tmp_path, whole)
     assert [case.stage for case in read.cases] == ["saved"] * len(one_of_each)
-    asked = [
-        (case.name, case.op, case.instance, case.solution, case.robot, case.now, case.planner) for case in read.cases
-    ]
-    assert asked == [
-        (case.name, case.op, case.instance, case.solution, case.robot, case.now, case.planner) for case in one_of_each
+    assert [replace(case, stage="smoke") for case in read.cases] == [
+        replace(case, stage="smoke") for case in one_of_each
     ]
 
 
@@ -79,25 +76,17 @@ def test_each_program_and_level_has_a_folder_of_its_own(tmp_path: Path) -> None:
     assert read_saved(first, whole=True).cases
 
 
-def damage_text(file: Path) -> None:
-    file.write_text("{}")
-
-
-def damage_to_pipe(file: Path) -> None:
-    file.unlink()
-    os.mkfifo(file)
-
-
-def damage_to_link(file: Path) -> None:
-    file.unlink()
-    file.symlink_to("/dev/zero")
-
-
-@pytest.mark.parametrize("damage", [damage_text, damage_to_pipe, damage_to_link])
+@pytest.mark.parametrize("how", ["another text", "a pipe", "a link"])
 @pytest.mark.parametrize("name", ["vector.json", "run.json"])
-def test_damaged_findings_are_cleared(tmp_path: Path, name: str, damage: Callable[[Path], None]) -> None:
+def test_damaged_findings_are_cleared(tmp_path: Path, name: str, how: str) -> None:
     save_all(FAILURES, tmp_path, ORIGIN)
-    damage(tmp_path / name)
+    (tmp_path / name).unlink()
+    if how == "another text":
+        (tmp_path / name).write_text("{}")
+    elif how == "a pipe":
+        os.mkfifo(tmp_path / name)
+    else:
+        (tmp_path / name).symlink_to("/dev/zero")
     stale = f"{tmp_path} holds findings that cannot be read: they are cleared."
     assert read_saved(tmp_path, whole=True) == Saved(stale=stale)
     assert files(tmp_path) == set()

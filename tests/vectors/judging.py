@@ -20,7 +20,9 @@ from carp_spec import (
     Solution,
     Visit,
     judge,
+    neighbourhood_rules,
     plan_cost,
+    polish_rules,
     total_cost,
     violations_of,
 )
@@ -31,30 +33,8 @@ from carp_spec.documents.solutions import read_solution, read_trace
 from carp_spec.documents.vectors import Fields, Vector
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carp_spec.instance_rules import after_goal_is_known, following_is_known
-from carp_spec.neighbourhood_rules import (
-    baseline_is_tried,
-    distance,
-    nearest,
-    neighbourhood_orders,
-    next_trajectory,
-    replaces_best,
-    replanned_from,
-)
 from carp_spec.permutations import splitmix64
 from carp_spec.plan_rules import is_plan_cost, is_total_cost, plan_keeps_history
-from carp_spec.polish_rules import (
-    by_distance,
-    drawn,
-    is_in_way,
-    is_kept,
-    kind_of,
-    members_of,
-    options_are_right,
-    order_of,
-    pivot_of,
-    spans,
-    ticks_apart,
-)
 from carp_spec.query_rules import expansion_key
 from carp_spec.windows import Window, free_windows, stay_fits, windows_are_free
 from carp_verify.bound.rules import BOUND_RULES
@@ -270,93 +250,82 @@ def _ties(vector: Vector) -> Fields:
 
 
 def _distance(vector: Vector) -> Fields:
-    plans = [_plan(vector.input[name]["robot"], vector.input[name]["visits"]) for name in ("one", "other")]
-    mean = distance(vector.read_instance(), *plans)
+    mean = neighbourhood_rules.distance(vector.read_instance(), _plan_of(vector, "one"), _plan_of(vector, "other"))
     return {"distance": [mean.numerator, mean.denominator]}
 
 
 def _nearest(vector: Vector) -> Fields:
-    return {"nearest": nearest([[Fraction(*each) for each in robot] for robot in vector.input["distances"]])}
+    distances = [[Fraction(*each) for each in robot] for robot in vector.input["distances"]]
+    return {"nearest": neighbourhood_rules.nearest(distances)}
 
 
 def _orders(vector: Vector) -> Fields:
-    orders = neighbourhood_orders(vector.input["size"], vector.input["sample"], splitmix64(vector.input["seed"]))
-    return {"orders": [[*order] for order in orders]}
+    size, sample, seed = (vector.input[name] for name in ("size", "sample", "seed"))
+    return {"orders": [[*order] for order in neighbourhood_rules.neighbourhood_orders(size, sample, splitmix64(seed))]}
 
 
 def _update(vector: Vector) -> Fields:
-    before, planned = (
-        each and _plan(each["robot"], each["visits"]) for each in (vector.input["before"], vector.input["planned"])
-    )
-    after = next_trajectory(before, planned)
+    before, planned = (vector.input[name] and _plan_of(vector, name) for name in ("before", "planned"))
+    after = neighbourhood_rules.next_trajectory(before, planned)
     visits = [[visit.resource, visit.enter, visit.leave] for visit in after.visits]
     return {"trajectory": {"robot": after.robot, "visits": visits}}
 
 
-def _draws(vector: Vector) -> Fields:
-    return {"drawn": drawn(vector.input["things"], vector.input["count"], splitmix64(vector.input["seed"]))}
+def _drawn(answer: str, draw: Callable[..., Any], *names: str) -> Callable[[Vector], Fields]:
+    """The answer of a function of the fields of these names, and of a stream of random numbers from the seed."""
 
+    def judged(vector: Vector) -> Fields:
+        found = draw(*(vector.input[name] for name in names), splitmix64(vector.input["seed"]))
+        return {answer: [*found] if isinstance(found, tuple) else found}
 
-def _kind(vector: Vector) -> Fields:
-    turn, waiting, delay = (vector.input[name] for name in ("turn", "waiting", "delay"))
-    return {"kind": kind_of(turn, waiting, delay, splitmix64(vector.input["seed"]))}
-
-
-def _pivot(vector: Vector) -> Fields:
-    return {"pivot": pivot_of(vector.input["weights"], splitmix64(vector.input["seed"]))}
-
-
-def _members(vector: Vector) -> Fields:
-    pivot, candidates, everyone = (vector.input[name] for name in ("pivot", "candidates", "everyone"))
-    return {"members": members_of(pivot, candidates, everyone, splitmix64(vector.input["seed"]))}
+    return judged
 
 
 def _way(vector: Vector) -> Fields:
-    plan, other = (_plan(each["robot"], each["visits"]) for each in (vector.input["plan"], vector.input["other"]))
-    return {"in_way": is_in_way(spans(vector.read_instance().graph.successors, plan), other)}
+    spans = polish_rules.spans(vector.read_instance().graph.successors, _plan_of(vector, "plan"))
+    return {"in_way": polish_rules.is_in_way(spans, _plan_of(vector, "other"))}
 
 
 def _contested(vector: Vector) -> Fields:
-    other = _plan(vector.input["other"]["robot"], vector.input["other"]["visits"])
-    return {"apart": ticks_apart(Visit(*vector.input["visit"]), other)}
+    return {"apart": polish_rules.ticks_apart(Visit(*vector.input["visit"]), _plan_of(vector, "other"))}
 
 
 def _near(vector: Vector) -> Fields:
-    return {"order": by_distance([Fraction(*each) for each in vector.input["distances"]])}
-
-
-def _order(vector: Vector) -> Fields:
-    order = order_of(vector.input["members"], vector.input["repair"], splitmix64(vector.input["seed"]))
-    return {"order": [*order]}
+    return {"order": polish_rules.by_distance([Fraction(*each) for each in vector.input["distances"]])}
 
 
 def _kept(vector: Vector) -> Fields:
     before, after = ((each[0], each[1]) for each in (vector.input["before"], vector.input["after"]))
-    return {"kept": is_kept(before, after)}
+    return {"kept": polish_rules.is_kept(before, after)}
 
 
 _ANSWERED: Mapping[str, Callable[[Vector], Fields]] = {
     "window/free": _free,
     "query/ties": _ties,
-    "neighbourhood/baseline": lambda vector: {"tried": baseline_is_tried(**vector.input)},
+    "neighbourhood/baseline": lambda vector: {"tried": neighbourhood_rules.baseline_is_tried(**vector.input)},
     "neighbourhood/nearest": _nearest,
     "neighbourhood/distance": _distance,
-    "neighbourhood/replan": lambda vector: {"from": replanned_from(**vector.input)},
+    "neighbourhood/replan": lambda vector: {"from": neighbourhood_rules.replanned_from(**vector.input)},
     "neighbourhood/orders": _orders,
-    "neighbourhood/best": lambda vector: {"replaces": replaces_best(**vector.input)},
+    "neighbourhood/best": lambda vector: {"replaces": neighbourhood_rules.replaces_best(**vector.input)},
     "neighbourhood/update": _update,
-    "polish/draws": _draws,
-    "polish/kind": _kind,
-    "polish/pivot": _pivot,
-    "polish/members": _members,
+    "polish/draws": _drawn("drawn", polish_rules.drawn, "things", "count"),
+    "polish/kind": _drawn("kind", polish_rules.kind_of, "turn", "waiting", "delay"),
+    "polish/pivot": _drawn("pivot", polish_rules.pivot_of, "weights"),
+    "polish/members": _drawn("members", polish_rules.members_of, "pivot", "candidates", "everyone"),
     "polish/way": _way,
     "polish/contested": _contested,
     "polish/near": _near,
-    "polish/order": _order,
+    "polish/order": _drawn("order", polish_rules.order_of, "members", "repair"),
     "polish/kept": _kept,
-    "polish/options": lambda vector: {"right": not [*options_are_right(**vector.input)]},
+    "polish/options": lambda vector: {"right": not [*polish_rules.options_are_right(**vector.input)]},
 }
 
 
 def _plan(robot: RobotId, visits: Sequence[Sequence[Any]]) -> Plan:
     return Plan(robot, tuple(Visit(*visit) for visit in visits))
+
+
+def _plan_of(vector: Vector, name: str) -> Plan:
+    """The plan in a field."""
+    return _plan(**vector.input[name])
