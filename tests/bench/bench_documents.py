@@ -9,10 +9,11 @@ import sys
 from collections.abc import Callable
 from time import process_time
 
+from tests.bench.bench_fleet import warehouse
+
 import carproof
 from carp_optimized.fleet import PlannedFleet
 from carproof import Carp, read_instance, read_solution, write_instance, write_solution
-from carproof.generate import Fleet, Range, Warehouse, warehouse_instance
 
 TURNS = 7
 
@@ -31,8 +32,7 @@ def least(*functions: Callable[[], object]) -> list[float]:
 
 def measure(robots: int) -> str:
     """The rows of a table."""
-    drawn = Fleet(robots=robots, distinct="none", release=Range(0, robots))
-    instance = warehouse_instance(Warehouse(columns=12, rows=30, stations=60), drawn)
+    instance = warehouse(robots)
     solution = carproof.plan(instance, Carp())
     text, network = write_solution(solution), write_instance(instance)
     fleet = PlannedFleet(instance)

@@ -34,18 +34,11 @@ MOST = 12  # robots of a fleet
 OFTEN = 500  # requests from one look at the memory to the next
 HOSTILE: tuple[tuple[bytes, str], ...] = (
     (b"", "document/json"),
-    (b"nonsense", "document/json"),
-    (b'{"id": 1, "op": "fleet/add", "fleet": "f"', "document/json"),
     (b'{"id": 1, "id": 2, "op": "stop"}', "document/json"),
-    (b"\xff\xfe{}", "document/json"),
     (b"[" * 2000, "document/json"),
-    (b"[]", "protocol/request"),
     (b'{"op": "fleet/rest", "fleet": "f"}', "protocol/request"),
-    (b'{"id": 1, "op": "fleet/fly"}', "protocol/request"),
     (b'{"id": 1, "op": "fleet/rest", "fleet": "nobody"}', "fleet/name"),
-    (b'{"id": 1, "op": "fleet/rest", "fleet": 7}', "protocol/request"),
     (b'{"id": 1, "op": "fleet/advance", "fleet": "f", "now": -1}', "request/now"),
-    (b'{"id": 1, "op": "fleet/advance", "fleet": "f", "now": 1.0}', "protocol/request"),
     (b'{"id": 1, "op": "fleet/advance", "fleet": "f", "now": 9999999999}', "limit/ticks"),
     (b'{"id": 1, "op": "fleet/polish", "fleet": "f", "iterations": -1}', "polish/options"),
     (b'{"id": 1, "op": "fleet/assign", "fleet": "f", "robot": "nobody", "stops": [{"resource": "a"}]}', "fleet/robot"),

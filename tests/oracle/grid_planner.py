@@ -1,6 +1,6 @@
 """A planner as people write them: MovingAI files in, LaCAM's text or coordinate paths out, one robot after the other.
 
-With `--forget swaps`, `parked` or `start` it has that bug. A robot without a way leaves all without plans.
+With `--forget swaps` or `parked` it has that bug. A robot without a way leaves all without plans.
 """
 
 import argparse
@@ -66,11 +66,9 @@ def lacam(paths: list[list[Cell]]) -> str:
     return "\n".join(["solver=grid", f"solved={int(end > 0)}", "solution=", *lines, ""])
 
 
-def coordinates(paths: list[list[Cell]], row_first: bool, first: int) -> str:
-    turned = [[cell[::-1] if row_first else cell for cell in path[first:]] for path in paths]
+def coordinates(paths: list[list[Cell]]) -> str:
     return "".join(
-        f"Agent {agent}: " + "".join(f"({one},{two})->" for one, two in path) + "\n"
-        for agent, path in enumerate(turned)
+        f"Agent {agent}: " + "".join(f"({x},{y})->" for x, y in path) + "\n" for agent, path in enumerate(paths)
     )
 
 
@@ -80,7 +78,7 @@ def main() -> None:
     parser.add_argument("scen", type=Path)
     parser.add_argument("agents", type=int)
     parser.add_argument("--forget", default="")
-    parser.add_argument("--paths", choices=["x-y", "row-column"])
+    parser.add_argument("--paths", action="store_true")
     parser.add_argument("-o", dest="output", type=Path)
     options = parser.parse_args()
     cells, others = read_cells(options.map), Others(options.forget)
@@ -90,10 +88,7 @@ def main() -> None:
             others.paths = []
             break
         others.paths.append(path)
-    if options.paths:
-        text = coordinates(others.paths, options.paths == "row-column", int(options.forget == "start"))
-    else:
-        text = lacam(others.paths)
+    text = coordinates(others.paths) if options.paths else lacam(others.paths)
     if options.output is None:
         sys.stdout.write(text)
     else:

@@ -2,12 +2,11 @@
 
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.oracle.running import Run, asked, save, solution, town
+from tests.oracle.running import asked, solution, town
 
 import carproof
 from carp_spec import Refusal, Stop, check_update, judge
@@ -46,37 +45,6 @@ def test_a_robot_serves_further_stops_and_all_keep_their_histories(fleet: FleetU
         assert judge(further, after).violations == ()
         assert {plan.robot for plan in after.plans} == {plan.robot for plan in before.plans}
         assert check_update(before.plans, after.plans, now) == ()
-
-
-@pytest.mark.parametrize(
-    ("arguments", "error"),
-    [
-        ("r2 d:-1 p --now 4", "STOP 1: the service must be a whole number of at least 0, not -1 [instance/stops]"),
-        ("r2 d b:x --now 4", "STOP 2: it must be the id of a resource, and 'b:x' is not [instance/stops]"),
-        ("r2 d:9999999999 --now 4", "STOP: the services must be at most 1073741823 together, and are more; "),
-        ("r9 d --now 4", "ROBOT: the instance must have the robot, and has no 'r9' [request/robot]"),
-    ],
-)
-def test_the_command_names_the_argument_that_is_wrong(
-    carproof: Run, elsewhere: Path, arguments: str, error: str
-) -> None:
-    del elsewhere
-    save(hall=HALL, plans=PLANS)
-    outcome = carproof(f"assign hall.json plans.json {arguments} -o next.json --instance after.json")
-    assert outcome.code == 2
-    assert outcome.stderr.startswith(f"Error: {error}")
-    assert outcome.stderr.endswith("]\n")
-    assert not Path("next.json").exists()
-    assert not Path("after.json").exists()
-
-
-@pytest.mark.parametrize("names", ["-o same.json --instance ./same.json", "-o - --instance -"])
-def test_instance_and_plans_are_not_written_over_each_other(carproof: Run, elsewhere: Path, names: str) -> None:
-    save(hall=HALL, plans=PLANS)
-    outcome = carproof(f"assign hall.json plans.json r2 d --now 4 {names}")
-    assert (outcome.code, outcome.stdout) == (2, "")
-    assert "another option writes there too" in outcome.stderr
-    assert not (elsewhere / "same.json").exists()
 
 
 def test_a_stop_to_which_no_way_leads_changes_nothing() -> None:

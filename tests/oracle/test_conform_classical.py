@@ -87,7 +87,7 @@ def report_of(process: Run, *arguments: str) -> dict[str, Any]:
     ("options", "template"),
     [
         ([], [*PLANNER, *FILES, "-o", "{solution}"]),
-        (["--from", "paths-x-y"], [*PLANNER, *FILES, "--paths", "x-y"]),
+        (["--from", "paths-x-y"], [*PLANNER, *FILES, "--paths"]),
     ],
 )
 def test_a_right_planner_conforms_and_is_not_asked_what_its_files_cannot_say(
@@ -126,7 +126,7 @@ def test_an_answer_in_no_format_is_a_protocol_error(process: Run) -> None:
 
 
 def test_a_format_that_could_be_two_is_asked_for_before_any_case(process: Run, elsewhere: Path) -> None:
-    template = [*PLANNER, *FILES, "--paths", "row-column", "--forget", "start"]
+    template = [sys.executable, "-c", "print('Agent 0: (0,0)->(0,1)->')", *FILES]
     outcome = process("conform", "--one-shot", "--", *template)
     assert (outcome.code, outcome.stdout) == (2, "")
     assert "the format must be named by --from: it could be paths-row-column, paths-x-y" in outcome.stderr

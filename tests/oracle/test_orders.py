@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from msgspec import structs
 from tests.oracle.layout_files import OPENTCS
 from tests.oracle.running import Run
 from tests.profiles import draws
@@ -43,25 +42,6 @@ def orders(instance: Instance, solution: Solution, **options: object) -> dict[st
     return {each["serialNumber"]: each for each in map(json.loads, data.splitlines())}
 
 
-def named(instance: Instance, solution: Solution) -> tuple[Instance, Solution]:
-    """With ids that print differently."""
-    name = {id: f"p{place}" for place, id in enumerate(instance.graph.index)}
-    robot = {id: f"r{place}" for place, id in enumerate(instance.robot)}
-    graph = ResourceGraph(
-        tuple(replace(each, id=name[each.id]) for each in instance.graph.resources),
-        tuple((name[one], name[two]) for one, two in instance.graph.edges),
-        instance.graph.directed,
-        tuple(replace(each, resources=tuple(map(name.__getitem__, each.resources))) for each in instance.graph.groups),
-    )
-    robots = tuple(replace(each.in_names(name.__getitem__), id=robot[each.id]) for each in instance.robots)
-    plans = tuple(
-        Plan(robot[plan.robot], tuple(structs.replace(visit, resource=name[visit.resource]) for visit in plan.visits))
-        for plan in solution.plans
-    )
-    rest = (tuple(robot[id] for id in ids) for ids in (solution.order, solution.unplanned))
-    return replace(instance, graph=graph, robots=robots), Solution(plans, *rest)
-
-
 def check_form(order: Order) -> None:
     """What the versions 2 and 3 ask of an order."""
     assert all(isinstance(order[name], kind) for name, kind in NEEDED.items())
@@ -92,15 +72,20 @@ def check_form(order: Order) -> None:
 def visited(instance: Instance, order: Order, *, base: bool = False) -> Iterator[str]:
     """The resources of an order, or of its base."""
     nodes, edges = order["nodes"], order["edges"]
+    resources = {*map(str, instance.graph.index)}
     for node, edge in zip(nodes, [{"released": False, "edgeId": None}, *edges], strict=True):
-        if edge["edgeId"] in instance.graph.index and (edge["released"] or not base):
+        if edge["edgeId"] in resources and (edge["released"] or not base):
             yield edge["edgeId"]
         if node["released"] or not base:
             yield node["nodeId"]
 
 
 CROWDED = Sizes(resources=4, robots=5, groups=2, stops=2, service=3)
-PLANNED = instances(CROWDED, least_robots=2).map(lambda each: PlannedInstance(each, reference_plan(each, Carp())))
+PLANNED = (
+    instances(CROWDED, least_robots=2)
+    .filter(lambda each: all(len({*map(str, ids)}) == len(ids) for ids in (each.robot, each.graph.index)))
+    .map(lambda each: PlannedInstance(each, reference_plan(each, Carp())))
+)
 
 
 @given(PLANNED, st.integers(0, 12), st.sampled_from(["2.1.0", "3.0.0"]))
@@ -108,7 +93,7 @@ PLANNED = instances(CROWDED, least_robots=2).map(lambda each: PlannedInstance(ea
 def test_orders_hold_the_plans_and_release_no_more_robots_than_fit(
     planned: PlannedInstance, at: int, version: str
 ) -> None:
-    instance, solution = named(planned.instance, planned.solution)
+    instance, solution = planned.instance, planned.solution
     written = orders(instance, solution, at=at, version=version)
     holds: dict[str, set[str]] = {}
     for plan in solution.plans:
@@ -118,10 +103,10 @@ def test_orders_hold_the_plans_and_release_no_more_robots_than_fit(
         if order is None:
             continue
         check_form(order)
-        assert [*visited(instance, order)] == [visit.resource for visit in plan.visits]
+        assert [*visited(instance, order)] == [str(visit.resource) for visit in plan.visits]
         base = [*visited(instance, order, base=True)]
         nodes = [node["nodeId"] for node in order["nodes"]]
-        assert all(visit.resource in base for visit in entered if visit.resource in nodes)
+        assert all(str(visit.resource) in base for visit in entered if str(visit.resource) in nodes)
         for visit, resource in zip(plan.visits, base, strict=False):
             if visit.leave is None or visit.leave + instance.gap > at:
                 holds.setdefault(resource, set()).add(order["serialNumber"])
@@ -138,7 +123,7 @@ def test_orders_hold_the_plans_and_release_no_more_robots_than_fit(
 def test_an_update_continues_the_order_from_the_last_node_of_its_base(
     planned: PlannedInstance, at: int, more: int
 ) -> None:
-    instance, solution = named(planned.instance, planned.solution)
+    instance, solution = planned.instance, planned.solution
     before, after = (orders(instance, solution, at=tick) for tick in (at, at + more))
     updates = orders(instance, solution, at=at + more, since=at)
     for robot, order in after.items():

@@ -91,6 +91,14 @@ PLANNING = (
     ("plan town.json --iterations 1 --m 3", "[planner/options]"),
     ("plan town.json --seconds 1 --engine reference", "[planner/options]"),
 )
+ASSIGNING = (
+    ("r2 d:-1 a", "Error: STOP 1: the service must be a whole number of at least 0, not -1 [instance/stops]"),
+    ("r2 d b:x", "Error: STOP 2: it must be the id of a resource, and 'b:x' is not [instance/stops]"),
+    ("r2 d:9999999999", "Error: STOP: the services must be at most 1073741823 together, and are more; "),
+    ("r9 d", "Error: ROBOT: the instance must have the robot, and has no 'r9' [request/robot]"),
+    ("r2 d -o ./after.json", "another option writes there too"),
+    ("r2 d -o - --instance -", "another option writes there too"),
+)
 EXECUTING = (
     ("execution retime east.json east-plans.json trace-early.json", "trace-early.json: $.", "[trace/ticks]"),
     ("execution retime east.json east-plans.json east-plans.json", "east-plans.json: $.", "[document/format]"),
@@ -114,8 +122,11 @@ PROOFS = (
     ("audit town.json unordered.json", "[solution/order]"),
     ("bound town.json --plans east-plans.json", "plans to compare with must break no rule"),
     ("bound --plans plans.json", "Give INSTANCE, or --map and --scen."),
-    ("bound late.json --steps 1", "late.json: $.robots[0].release: "),
-    ("bound late.json --steps 1", "the reference engine has no such limit, but finds no bounds"),
+    (
+        "bound late.json --steps 1",
+        "late.json: $.robots[0].release: ",
+        "the reference engine has no such limit, but finds no bounds",
+    ),
     ("verify town.json bound-scale.json", "bound-scale.json: $.scale: ", "[document/shape]"),
     ("optimum town.json --proof town.json", "town.json"),
     ("verify nowhere", "nowhere"),
@@ -192,6 +203,8 @@ KINDS = {
     "site.json": "GeoJSON",
     "room.yaml": "a map for ROS",
 }
+ASSIGN = "assign town.json plans.json --now 1 -o next.json --instance after.json"
+ASSIGNMENTS = tuple((f"{ASSIGN} {words}", message) for words, message in ASSIGNING)
 OTHERS = tuple(
     (command.replace("FILE", file), f"{file}: this is ", kind, "carproof convert")
     for file, kind in KINDS.items()
@@ -216,7 +229,20 @@ def many_documents(folder: Path) -> Path:
     [
         pytest.param(command, messages, id=f"{command}-{number}")
         for number, (command, *messages) in enumerate(
-            (*USAGE, *FILES, *OTHERS, *PLANNING, *EXECUTING, *PROOFS, *MAKING, *FORMATS, *CONFORM, *SIZES, *EXPERIMENTS)
+            (
+                *USAGE,
+                *FILES,
+                *OTHERS,
+                *PLANNING,
+                *ASSIGNMENTS,
+                *EXECUTING,
+                *PROOFS,
+                *MAKING,
+                *FORMATS,
+                *CONFORM,
+                *SIZES,
+                *EXPERIMENTS,
+            )
         )
     ],
 )
