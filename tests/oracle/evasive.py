@@ -21,10 +21,7 @@ from carproof.protocol.server import respond
 
 Request = dict[str, Any]
 Response = dict[str, Any]
-FEW = 1
-"""The robots with which everything is easy."""
 LEAVES_AFTER = 50
-FORMAT = "carproof-verdict/1"
 SOLUTION = "carproof-solution/1"
 SKIPS: Response = {"skipped": "no time"}
 UNDECIDED: Response = {"result": {"cost": None, "lower": None, "decided": False, "solution": None}}
@@ -60,8 +57,7 @@ class Evasive:
         self.answered = 0
         self.evade = getattr(self, how.replace(" ", "_"))
 
-    def is_undecided(self, request: Request) -> Response:
-        del request
+    def is_undecided(self, _: Request) -> Response:
         return UNDECIDED
 
     def finds_and_does_not_prove(self, request: Request) -> Response:
@@ -71,7 +67,7 @@ class Evasive:
         return SKIPS if robots(request) else right(request)
 
     def answers_one_robot(self, request: Request) -> Response:
-        return SKIPS if len(robots(request)) > FEW else right(request)
+        return SKIPS if len(robots(request)) > 1 else right(request)
 
     def skips_the_unknown(self, request: Request) -> Response:
         return right(request) if question(request) in self.published else SKIPS
@@ -91,9 +87,7 @@ class Evasive:
         return right(request)
 
     def calls_all_valid(self, request: Request) -> Response:
-        cost = right(request)["result"]["cost"]
-        unplanned = right(request)["result"]["unplanned"]
-        return {"result": {"format": FORMAT, "valid": True, "cost": cost, "unplanned": unplanned, "violations": []}}
+        return {"result": {**right(request)["result"], "valid": True, "violations": []}}
 
     def plans_nobody(self, request: Request) -> Response:
         if request["op"] == "query":
@@ -107,8 +101,8 @@ class Evasive:
         return {"result": {"format": SOLUTION, "plans": plans, "order": order, "unplanned": unplanned}}
 
     def adds_nobody(self, request: Request) -> Response:
-        planned = {json.dumps(plan["robot"]) for plan in request["solution"]["plans"]}
-        unplanned = [robot for robot in robots(request) if json.dumps(robot) not in planned]
+        planned = [plan["robot"] for plan in request["solution"]["plans"]]
+        unplanned = [robot for robot in robots(request) if robot not in planned]
         return {"result": {**request["solution"], "unplanned": unplanned}}
 
     def gives_back(self, request: Request) -> Response:

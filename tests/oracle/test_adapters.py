@@ -49,11 +49,6 @@ def test_a_file_with_the_other_system_s_line_ends_is_read() -> None:
     assert all(read(text.replace("\n", "\r\n")) == SOLUTION for text in (*CORRECT.values(), TABLE))
 
 
-def test_carproofs_own_document_is_one_of_the_formats() -> None:
-    assert read(write_solution(SOLUTION).decode()) == SOLUTION
-    assert write_foreign_solution(INSTANCE, SOLUTION, "carproof") == write_solution(SOLUTION)
-
-
 @pytest.mark.parametrize(
     ("text", "rules"),
     [

@@ -69,8 +69,7 @@ def later(plan: Plan) -> Plan:
     return Plan(plan.robot, (structs.replace(first, leave=first.leave + 1), *delayed))
 
 
-def no_plan(case: Case, reply: Reply) -> Reply:
-    del case
+def no_plan(_: Case, reply: Reply) -> Reply:
     return QueryDocument(None) if isinstance(reply, QueryDocument) else reply
 
 
@@ -80,15 +79,13 @@ def late_plan(case: Case, reply: Reply) -> Reply:
     return reply if plan is None else query_document(later(plan))
 
 
-def polishes_into_each_other(case: Case, reply: Reply) -> Reply:
+def polishes_into_each_other(case: Case, _: Reply) -> Reply:
     """Every robot goes as if it were alone."""
-    del reply
     alone = [carp_reference.query(case.instance, (), robot) for robot in case.instance.robot]
     return Solution.of(case.instance, [plan for plan in alone if plan is not None])
 
 
-def as_it_is(case: Case, reply: Reply) -> Reply:
-    del case
+def as_it_is(_: Case, reply: Reply) -> Reply:
     return reply
 
 

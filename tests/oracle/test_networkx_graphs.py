@@ -84,12 +84,6 @@ def test_metric_positions_are_taken_with_a_scale() -> None:
 DIGRAPH: Any = nx.DiGraph([(1, 2), (2, 3), (3, 1)])
 
 
-def test_a_directed_graph_has_moves_one_way() -> None:
-    instance = instance_from_networkx(DIGRAPH, [Robot("r1", 1, 3)], "vanish")
-    assert instance.graph.successors == {1: (2,), 2: (3,), 3: (1,)}
-    assert instance.after_goal == "vanish"
-
-
 @pytest.mark.parametrize(
     ("graph", "robots", "scale", "path"),
     [
