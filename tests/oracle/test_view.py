@@ -1,6 +1,5 @@
 """`carproof view`: what the page and the stills hold, for sound, broken and hostile solutions."""
 
-import json
 import re
 from collections import Counter
 from pathlib import Path
@@ -28,12 +27,14 @@ from carproof.viewer.page import view
 from carproof.viewer.placement import UNIT, placement
 from carproof.viewer.samples import FOLDER, sample_pictures
 
+pytestmark = pytest.mark.usefixtures("elsewhere")
+
 FEWEST_PIXELS = 30
 OUTSIDE = re.compile(r"""(?:src|href|url|action)\s*[=(]\s*["']?(?!#|data:)[a-z]*:?//""", re.IGNORECASE)
 
 
-def test_the_page_is_one_file_that_names_no_address_outside(carproof: Run, tmp_path: Path) -> None:
-    page = drawn(carproof, tmp_path, CORRIDOR, COLLIDING)
+def test_the_page_is_one_file_that_names_no_address_outside(carproof: Run) -> None:
+    page = drawn(carproof, CORRIDOR, COLLIDING)
     assert not OUTSIDE.search(page)
     assert "default-src 'none'" in page
     assert not re.search(r"<(?:link|script|img)[^>]*(?:src|href)=\"(?!data:)", page)
@@ -45,36 +46,36 @@ def test_equal_input_gives_equal_bytes(process: Run, elsewhere: Path) -> None:
     assert (elsewhere / "one").read_bytes() == (elsewhere / "two").read_bytes()
 
 
-def test_the_scene_has_every_free_window(carproof: Run, tmp_path: Path) -> None:
-    scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, solution({"r1": EAST_PLAN, "r2": [["b", 2, 4]]})))
+def test_the_scene_has_every_free_window(carproof: Run) -> None:
+    scene = scene_of(drawn(carproof, CORRIDOR, solution({"r1": EAST_PLAN, "r2": [["b", 2, 4]]})))
     assert [place["windows"] for place in scene["places"][:2]] == [[[1, None]], [[0, 1], [4, None]]]
     assert (scene["first"], scene["last"]) == (0, 4)
 
 
-def test_ids_cannot_leave_their_text(carproof: Run, tmp_path: Path) -> None:
+def test_ids_cannot_leave_their_text(carproof: Run) -> None:
     robot = {**EAST, "id": HOSTILE}
     instance = corridor([robot])
     instance["graph"]["nodes"][0]["id"] = instance["graph"]["edges"][0]["source"] = robot["start"] = HOSTILE
     plans = solution({HOSTILE: [[HOSTILE, 0, 1], *EAST_PLAN[1:]]})
-    page = drawn(carproof, tmp_path, instance, plans)
+    page = drawn(carproof, instance, plans)
     assert page.count("<script") == page.count("</script") == 2
     shown = "</script><script>alert('1')</script>&\"\\u2028é漢字🤖\\u202e"
     assert scene_of(page)["tracks"][0]["label"] == shown
     for options in (("--at", "0"), ("--chart",)):
-        texts = [each.text for each in picture_of(drawn(carproof, tmp_path, instance, plans, *options)).iter()]
+        texts = [each.text for each in picture_of(drawn(carproof, instance, plans, *options)).iter()]
         assert shown in texts
 
 
-def test_the_still_of_the_map_marks_the_violations_of_its_tick(carproof: Run, tmp_path: Path) -> None:
+def test_the_still_of_the_map_marks_the_violations_of_its_tick(carproof: Run) -> None:
     def marked(tick: int) -> tuple[int, int]:
-        still = drawn(carproof, tmp_path, CORRIDOR, COLLIDING, "--at", str(tick))
+        still = drawn(carproof, CORRIDOR, COLLIDING, "--at", str(tick))
         return len(picture_of(still).findall(f".//{SVG}path[@class='violation']")), still.count(" blamed")
 
     assert [marked(tick) for tick in range(4)] == [(0, 0), (1, 2), (1, 2), (0, 0)]
 
 
-def test_the_still_of_the_chart_has_rows_windows_stays_and_violations(carproof: Run, tmp_path: Path) -> None:
-    picture = picture_of(drawn(carproof, tmp_path, CORRIDOR, COLLIDING, "--chart"))
+def test_the_still_of_the_chart_has_rows_windows_stays_and_violations(carproof: Run) -> None:
+    picture = picture_of(drawn(carproof, CORRIDOR, COLLIDING, "--chart"))
     count = {
         kind: len(picture.findall(f".//{SVG}{tag}[@class='{kind}']"))
         for tag, kind in (("text", "row-name"), ("path", "window"), ("path", "bar"), ("path", "violation"))
@@ -82,11 +83,11 @@ def test_the_still_of_the_chart_has_rows_windows_stays_and_violations(carproof: 
     assert count == {"row-name": 5, "window": 5, "bar": 7, "violation": 2}
 
 
-def test_one_way_moves_are_arrows(carproof: Run, tmp_path: Path) -> None:
+def test_one_way_moves_are_arrows(carproof: Run) -> None:
     instance = corridor([EAST])
     instance["graph"]["directed"] = True
     instance["graph"]["edges"].append({"source": "b", "target": "a"})
-    picture = picture_of(drawn(carproof, tmp_path, instance, solution({"r1": EAST_PLAN}), "--at", "0"))
+    picture = picture_of(drawn(carproof, instance, solution({"r1": EAST_PLAN}), "--at", "0"))
     paths = {each.get("class"): each.get("d", "") for each in picture.iter(f"{SVG}path")}
     assert "edge" not in paths
     assert paths["joint"].count("M") == 4
@@ -144,34 +145,33 @@ def test_large_graphs_without_positions_are_laid_out_in_rows() -> None:
     assert (placed.width, placed.height) == (29 * UNIT + 52, 29 * UNIT + 52)
 
 
-def test_both_resources_of_an_exchange_are_marked(carproof: Run, tmp_path: Path) -> None:
+def test_both_resources_of_an_exchange_are_marked(carproof: Run) -> None:
     west = {"id": "r2", "start": "b", "goal": "a"}
     plans = solution({"r1": [["a", 0, 1], ["b", 1, 2]], "r2": [["b", 0, 1], ["a", 1, 2]]})
     instance = corridor([{**EAST, "goal": "b"}, west])
-    still = picture_of(drawn(carproof, tmp_path, instance, plans, "--at", "1"))
+    still = picture_of(drawn(carproof, instance, plans, "--at", "1"))
     assert len(still.findall(f".//{SVG}path[@class='violation']")) == 2
-    chart = picture_of(drawn(carproof, tmp_path, instance, plans, "--chart"))
+    chart = picture_of(drawn(carproof, instance, plans, "--chart"))
     assert len(chart.findall(f".//{SVG}path[@class='violation']")) == 2
 
 
-def test_an_instance_alone_is_shown_with_its_starts_and_goals(carproof: Run, tmp_path: Path) -> None:
-    town = tmp_path / "town.json"
-    town.write_text(json.dumps(CORRIDOR))
-    outcome = carproof("view", town)
+def test_an_instance_alone_is_shown_with_its_starts_and_goals(carproof: Run) -> None:
+    save(town=CORRIDOR)
+    outcome = carproof("view town.json")
     scene = scene_of(outcome.stdout)
     assert (outcome.code, scene["alone"], scene["violations"]) == (0, True, [])
     assert all(track["start_mark"] and track["goal_mark"] for track in scene["tracks"])
-    assert carproof("view", town, "-o", tmp_path / "town.svg").code == 0
-    picture = picture_of((tmp_path / "town.svg").read_text())
+    assert carproof("view town.json -o town.svg").code == 0
+    picture = picture_of(Path("town.svg").read_text())
     assert len(picture.findall(f".//{SVG}circle[@class='start']")) == 2
-    refused = carproof("view", town, "--at", "0")
+    refused = carproof("view town.json --at 0")
     assert (refused.code, "give SOLUTION" in refused.stderr) == (2, True)
 
 
-def test_an_instance_without_resources_or_robots_is_drawn(carproof: Run, tmp_path: Path) -> None:
+def test_an_instance_without_resources_or_robots_is_drawn(carproof: Run) -> None:
     instance = {**corridor([]), "graph": {"nodes": [], "edges": []}}
     for options in ((), ("--at", "0"), ("--chart",)):
-        assert drawn(carproof, tmp_path, instance, solution({}), *options)
+        assert drawn(carproof, instance, solution({}), *options)
 
 
 @pytest.mark.parametrize(
@@ -199,9 +199,9 @@ def trace(now: int, *behind: list[object]) -> Document:
     }
 
 
-def test_a_trace_is_shown_beside_the_plans(carproof: Run, tmp_path: Path) -> None:
-    (tmp_path / "trace.json").write_text(json.dumps(trace(6, ["b", 0, 1], ["c", 1, None])))
-    scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, TWO_PLANNED, "--trace", str(tmp_path / "trace.json")))
+def test_a_trace_is_shown_beside_the_plans(carproof: Run) -> None:
+    save(trace=trace(6, ["b", 0, 1], ["c", 1, None]))
+    scene = scene_of(drawn(carproof, CORRIDOR, TWO_PLANNED, "--trace", "trace.json"))
     done = [
         [(scene["places"][scene["stands"][stand]["place"]]["label"], *ticks) for stand, *ticks in track["done"]]
         for track in scene["tracks"]
@@ -212,21 +212,19 @@ def test_a_trace_is_shown_beside_the_plans(carproof: Run, tmp_path: Path) -> Non
     assert [place["lanes_done"] for place in scene["places"]] == [1, 1, 1, 0, 0]
 
 
-def test_the_rules_that_a_trace_breaks_are_listed_where_the_plans_break_none(carproof: Run, tmp_path: Path) -> None:
-    (tmp_path / "trace.json").write_text(json.dumps(trace(6, ["b", 0, None])))
-    option = ("--trace", str(tmp_path / "trace.json"))
-    scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, TWO_PLANNED, *option))
+def test_the_rules_that_a_trace_breaks_are_listed_where_the_plans_break_none(carproof: Run) -> None:
+    save(trace=trace(6, ["b", 0, None]))
+    option = ("--trace", "trace.json")
+    scene = scene_of(drawn(carproof, CORRIDOR, TWO_PLANNED, *option))
     assert [rule["id"] for rule in scene["rules"]] == ["execution/order"]
     assert scene["violations"][0]["tracks"] == [0]
-    scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, COLLIDING, *option))
+    scene = scene_of(drawn(carproof, CORRIDOR, COLLIDING, *option))
     assert [rule["id"] for rule in scene["rules"]] == ["joint/capacity"]
 
 
-def test_only_the_first_of_very_many_violations_are_listed(
-    carproof: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_only_the_first_of_very_many_violations_are_listed(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("carproof.viewer.scene_builder.MOST_LISTED", 1)
-    scene = scene_of(drawn(carproof, tmp_path, CORRIDOR, COLLIDING))
+    scene = scene_of(drawn(carproof, CORRIDOR, COLLIDING))
     assert len(scene["violations"]) == 1
     assert scene["rules"][0]["count"] == 2
 

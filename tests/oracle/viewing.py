@@ -3,12 +3,11 @@
 import json
 import re
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
 
 from tests.oracle.layout_files import OPENTCS
-from tests.oracle.running import BROKEN, TWO, Document, Run
+from tests.oracle.running import BROKEN, TWO, Document, Run, save
 
 from carproof import Instance, Plan, Robot, Solution, Stop, Visit, import_layout
 
@@ -25,11 +24,10 @@ def plant() -> tuple[Instance, Solution]:
     return instance, Solution.of(instance, [Plan("tow", visits)])
 
 
-def drawn(carproof: Run, folder: Path, instance: Document, plans: Document, *options: str) -> str:
-    """The file that `carproof view` makes."""
-    (folder / "town.json").write_text(json.dumps(instance))
-    (folder / "plans.json").write_text(json.dumps(plans))
-    outcome = carproof("view", folder / "town.json", folder / "plans.json", *options)
+def drawn(carproof: Run, instance: Document, plans: Document, *options: str) -> str:
+    """What `carproof view` makes in the folder that a test is in."""
+    save(town=instance, plans=plans)
+    outcome = carproof("view town.json plans.json", *options)
     assert (outcome.code, outcome.stderr) == (0, "")
     return outcome.stdout
 
