@@ -12,7 +12,7 @@ from carp_spec import Carp, Group, Instance, Solution, judge, violations_of
 from carp_spec.execution.execution_rules import trace_violations
 from carproof import Delay, Resource, ResourceGraph, Robot, execute
 from carproof.execution import switching
-from carproof.execution.delays import executed, in_order, stuck
+from carproof.execution.delays import stuck
 from carproof.execution.simulation import random_delays
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 
@@ -58,16 +58,12 @@ def test_robots_that_change_places_are_safe_and_mostly_earlier(
     monkeypatch.setattr(switching, "MOST_TRIED", tried)
     earlier = 0
     for instance, solution, delays in cases():
-        found = switching.switching(instance, solution, delays)
-        assert judge(instance, found.solution).valid
-        order = order_of(instance, found.solution)
-        trace = executed(order, found.enters, delays)
-        assert not trace_violations(instance, found.solution, trace)
-        assert not {each.rule for each in violations_of(instance, trace.plans)} & TOGETHER
-        lasts = [(each.robot, len(each.visits) - 1) for each in solution.plans]
-        unswitched = in_order(order_of(instance, solution), delays)
-        earlier += sum(unswitched[node] - found.enters[node] for node in lasts)
-        assert found.switches > 0 or found.enters == unswitched
+        run, in_order = (execute(instance, solution, driver, delays) for driver in ("switching", "order"))
+        assert judge(instance, run.followed).valid
+        assert not trace_violations(instance, run.followed, run.trace)
+        assert not {each.rule for each in violations_of(instance, run.trace.plans)} & TOGETHER
+        assert run.switches > 0 or run.trace == in_order.trace
+        earlier += sum(in_order.late.values()) - sum(run.late.values())
     assert earlier > 0
 
 
