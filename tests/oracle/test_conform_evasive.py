@@ -22,9 +22,9 @@ PATIENT = 30.0
 EVASIVE = [sys.executable, str(Path(__file__).with_name("evasive.py"))]
 
 
-def run(how: str, ops: str, level: Level, examples: int = 60) -> Report:
+def run(how: str, ops: str, level: Level) -> Report:
     program = Program([*EVASIVE, how, ops], Limits(seconds=PATIENT))
-    return conform(program, Options(level, examples, limit=PATIENT, shrink_seconds=1))
+    return conform(program, Options(level, examples=60, limit=PATIENT, shrink_seconds=1))
 
 
 @pytest.mark.parametrize(

@@ -84,6 +84,7 @@ PLANNING = (
     ("query three.json broken.json r3", f"Error: broken.json: {CAPACITY}"),
     ("polish town.json plans.json --seconds 0", "--seconds: the seconds must be a number above 0, not 0.0 [polish/opt"),
     ("polish town.json plans.json --seconds 1 --iterations 1", "there must be either iterations or seconds, not both"),
+    ("polish town.json plans.json --now -1", "[request/now]"),
     ("polish town.json plans.json --bound bound-high.json", "bound-high.json: $."),
     ("execution give-way town.json plans.json r1 --route route.json --engine reference", "[plan/start]"),
     ("plan served.json --planner fixed-paths", "$.robots: each robot must have a goal alone here"),
