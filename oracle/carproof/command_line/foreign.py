@@ -1,6 +1,6 @@
 """The options of commands that read and write other planners' files, and the reading of these files."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
@@ -10,6 +10,7 @@ import click
 
 from carp_spec import AfterGoal, Instance, Solution
 from carproof.command_line.files import InputFile, read_bytes, read_instance_file, refuse_two_standard_inputs, shown
+from carproof.command_line.options import gathered
 from carproof.formats import ADAPTERS, format_of, named_as, read_foreign_solution
 from carproof.formats.movingai import movingai_instance, read_map, read_scenario
 
@@ -17,26 +18,18 @@ F = TypeVar("F", bound=Callable[..., Any])
 AGENTS_HELP = "The first N of the scenario's agents.  [default: all]"
 
 
-def formats() -> str:
+def described(formats: Mapping[str, Any]) -> str:
     """The formats with their descriptions."""
-    return "; ".join(f"{each.name}: {each.description}" for each in ADAPTERS.values())
+    return "; ".join(f"{name}: {each.description}" for name, each in formats.items())
 
 
-def from_option(function: F) -> F:
-    """`--from`: the format of the solution."""
-    help = f"The format of SOLUTION. {formats()}.  [default: the one that it looks like]"
-    return click.option("--from", "format", type=click.Choice([*ADAPTERS]), metavar="FORMAT", help=help)(function)
-
-
-def movingai_options(function: F) -> F:
-    """`--map`, `--scen` and `--agents`: a benchmark in place of an instance."""
-    for option in (
-        click.option("--agents", type=click.IntRange(min=0), help=AGENTS_HELP),
-        click.option("--scen", type=InputFile(), help="A MovingAI scenario, with --map."),
-        click.option("--map", type=InputFile(), help="A MovingAI map, in place of INSTANCE; robots park."),
-    ):
-        function = option(function)
-    return function
+from_option = click.option(
+    "--from",
+    "format",
+    type=click.Choice([*ADAPTERS]),
+    metavar="FORMAT",
+    help=f"The format of SOLUTION. {described(ADAPTERS)}.  [default: the one that it looks like]",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,18 +50,20 @@ class MovingAI:
             raise click.UsageError("--map and --scen go together, and --agents with them.")
         return cls(map, scen, agents)
 
-    @property
-    def names(self) -> tuple[str, str]:
-        """The files' names."""
-        return (self.map, self.scen)
+    def read(self) -> Instance:
+        """Read an instance from the map and the scenario."""
+        grid = read_map(read_bytes(self.map), shown(self.map))
+        robots = read_scenario(read_bytes(self.scen), grid, self.agents, shown(self.scen))
+        return movingai_instance(grid, robots, self.after_goal, shown(self.map))
 
 
-def read_movingai(benchmark: MovingAI) -> Instance:
-    """Read an instance from a MovingAI map and scenario."""
-    map, scen = benchmark.names
-    grid = read_map(read_bytes(map), shown(map))
-    robots = read_scenario(read_bytes(scen), grid, benchmark.agents, shown(scen))
-    return movingai_instance(grid, robots, benchmark.after_goal, shown(map))
+benchmark_options = gathered(
+    "benchmark",
+    MovingAI.of,
+    click.option("--map", type=InputFile(), help="A MovingAI map, in place of INSTANCE; robots park."),
+    click.option("--scen", type=InputFile(), help="A MovingAI scenario, with --map."),
+    click.option("--agents", type=click.IntRange(min=0), help=AGENTS_HELP),
+)
 
 
 def read_solution_of(instance: Instance, name: str, format: str | None) -> Solution:
@@ -88,8 +83,8 @@ class Problem:
     @property
     def names(self) -> tuple[str, ...]:
         """The names of the files."""
-        instances = (self.instance or "",) if self.benchmark is None else self.benchmark.names
-        return (*instances, *([] if self.solution is None else [self.solution]))
+        files = (self.instance,) if self.benchmark is None else (self.benchmark.map, self.benchmark.scen)
+        return tuple(each for each in (*files, self.solution) if each is not None)
 
     @property
     def title(self) -> str:
@@ -100,15 +95,13 @@ class Problem:
 
     def read_instance(self) -> Instance:
         """Read the instance or the benchmark."""
-        return read_movingai(self.benchmark) if self.benchmark else read_instance_file(self.instance or "")
+        return self.benchmark.read() if self.benchmark else read_instance_file(self.instance or "")
 
-    def read(self, *, as_named: bool = False) -> tuple[Instance, Solution]:
-        """Read both; `as_named`: robots of a benchmark, which has no names for them, get the names in the solution."""
-        instance, solution, _ = self.read_with_format(as_named=as_named)
-        return instance, solution
+    def read(self, *, as_named: bool = False) -> tuple[Instance, Solution, str]:
+        """Read both, and the solution's format.
 
-    def read_with_format(self, *, as_named: bool = False) -> tuple[Instance, Solution, str]:
-        """The same with the format of the solution."""
+        With `as_named`, robots of a benchmark, which has no names for them, get the names in the solution.
+        """
         refuse_two_standard_inputs(*self.names)
         instance = self.read_instance()
         assert self.solution is not None  # noqa: S101 - it is asked only where there is one
@@ -119,28 +112,17 @@ class Problem:
         return instance, read_foreign_solution(data, instance, file, format), format
 
 
-def solution_files(function: F) -> F:
+def solution_files(function: F, *, needs_solution: bool = True) -> F:
     """[INSTANCE] SOLUTION, and the options of benchmarks and formats; the command gets them as a `Problem`."""
-    return _with_files(function, needs_solution=True)
 
-
-def instance_and_perhaps_solution(function: F) -> F:
-    """The same, where the solution may be left out."""
-    return _with_files(function, needs_solution=False)
-
-
-def _with_files(function: F, *, needs_solution: bool) -> F:
     @wraps(function)
     def command(
         *,
         files: Sequence[str],
-        map: str | None,
-        scen: str | None,
-        agents: int | None,
+        benchmark: MovingAI | None,
         format: str | None,
         **others: Any,  # noqa: ANN401 - the command's own
     ) -> object:
-        benchmark = MovingAI.of(map, scen, agents)
         instances, solutions = files[: benchmark is None], files[benchmark is None :]
         if len(instances) != (benchmark is None) or not needs_solution <= len(solutions) <= 1:
             perhaps = "" if needs_solution else ", which may be left out"
@@ -150,4 +132,4 @@ def _with_files(function: F, *, needs_solution: bool) -> F:
 
     metavar = "[INSTANCE] SOLUTION" if needs_solution else "[INSTANCE] [SOLUTION]"
     files = click.argument("files", metavar=metavar, nargs=-1, required=needs_solution, type=InputFile())
-    return cast("F", files(movingai_options(from_option(command))))
+    return cast("F", files(benchmark_options(from_option(command))))

@@ -1,18 +1,28 @@
 """Arguments and options that several commands share."""
 
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from functools import wraps
 from typing import Any, TypeVar, cast
 
 import click
 
-from carp_spec import FixedPaths, Neighbourhood, Planner, Shuffled
+from carp_spec import FixedPaths, Instance, Neighbourhood, RobotId, Shuffled, Solution
 from carp_spec.inputs.options import SEARCH_SECONDS
-from carproof.command_line.files import InputFile, Output, OutputFile
+from carp_spec.requests import require_tick, sound_solution
+from carproof.command_line.files import (
+    InputFile,
+    Output,
+    OutputFile,
+    naming,
+    read_instance_file,
+    read_solution_file,
+    refuse_two_standard_inputs,
+)
 from carproof.engines import ENGINES
 from carproof.generate import Range
 from carproof.planner_options import PLANNERS, planner_named
+from carproof.requests import robot_called
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -33,26 +43,32 @@ class RangeType(click.ParamType[Range]):
             self.fail(f"{value!r} must be a whole number or LOW..HIGH, like 1..3.", param, ctx)
 
 
-def gathered(name: str, kind: type[Any], *options: Callable[[Any], Any]) -> Callable[[F], F]:
-    """Options, which a command gets as one dataclass; its fields have the names of their parameters."""
+def gathered(name: str, make: Callable[..., Any], *options: Callable[[Any], Any]) -> Callable[[F], F]:
+    """Arguments and options, which a command gets as the one value that is made of them."""
 
     def decorate(function: F) -> F:
         @wraps(function)
         def command(**given: Any) -> object:  # noqa: ANN401 - the command's own
-            taken = {each.name: given.pop(each.name) for each in fields(kind)}
-            return function(**{name: kind(**taken)}, **given)
+            taken = {each.name: given.pop(each.name) for each in own}
+            return function(**{name: make(**taken)}, **given)
 
         wrapped: Any = command
         for option in reversed(options):
             wrapped = option(wrapped)
+        own = wrapped.__click_params__[-len(options) :]
         return cast("F", wrapped)
 
     return decorate
 
 
-def first_given(options: Any) -> str | None:  # noqa: ANN401 - a dataclass of options
-    """The first option of a dataclass that was given, if any."""
-    return next((f"--{each.name}" for each in fields(options) if getattr(options, each.name) is not None), None)
+def options_given(**options: object) -> dict[str, Any]:
+    """The options that were given, by name."""
+    return {name: value for name, value in options.items() if value is not None}
+
+
+def read_by(read: Callable[[str], object]) -> Callable[[click.Context, click.Parameter, str | None], object]:
+    """The callback of an option whose text is read by a function, which may raise `Refusal`."""
+    return lambda _, __, text: None if text is None else read(text)
 
 
 def examples(*lines: str) -> str:
@@ -89,9 +105,29 @@ now_option = click.option(
 )
 
 
-def asks_for_a_robot(function: F) -> F:
-    """INSTANCE, SOLUTION and ROBOT, and --now."""
-    return instance_argument(solution_argument(click.argument("robot")(now_option(function))))
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """A robot of an instance that is asked for beside plans, and the tick of the request."""
+
+    instance: str
+    solution: str
+    robot: str
+    now: int
+
+    def read(self, *others: str, for_query: bool = False) -> tuple[Instance, Solution, RobotId]:
+        """The instance, its solution, which breaks no rule, and the robot; `others` are files that are read too.
+
+        For a query, the plan of the robot itself may break rules together with those of others.
+        """
+        require_tick(self.now)
+        refuse_two_standard_inputs(self.instance, self.solution, *others)
+        problem, given = read_instance_file(self.instance), read_solution_file(self.solution)
+        id = robot_called(problem, self.robot)
+        with naming(self.solution):
+            return problem, sound_solution(problem, given, id if for_query else None), id
+
+
+asks_for_a_robot = gathered("asked", Asked, instance_argument, solution_argument, click.argument("robot"), now_option)
 
 
 def gives_plans(function: F) -> F:
@@ -107,23 +143,12 @@ planner_option = click.option(
 )
 
 
-def planner_options(*names: str) -> Callable[[F], F]:
-    """The options of named planners, as in `carp_spec.planners`; options not given keep their defaults."""
-
-    def decorate(function: F) -> F:
-        for name in reversed(names):
-            function = _PLANNER_OPTIONS[name](function)
-        return function
-
-    return decorate
-
-
 def _option(flags: str, help: str, default: object, **settings: Any) -> Callable[[Any], Any]:  # noqa: ANN401 - click's
     """An option that is `None` where it is not given; the planner's default is shown."""
     return click.option(flags, default=None, help=f"{help}  [default: {default}]", **settings)
 
 
-_PLANNER_OPTIONS: dict[str, Callable[[Any], Any]] = {
+PLANNER_OPTIONS: dict[str, Callable[[Any], Any]] = {
     "m": _option("--m", "neighbourhood: how many robots are replanned together.", Neighbourhood().m, type=int),
     "sample": _option("--sample", "neighbourhood: how many of their orders are tried.", "all", type=int),
     "seed": _option("--seed", "neighbourhood, shuffled: the seed of random orders.", Neighbourhood().seed, type=int),
@@ -135,10 +160,10 @@ _PLANNER_OPTIONS: dict[str, Callable[[Any], Any]] = {
     "k": _option("--k", "fixed-paths: how many paths of each robot.", FixedPaths().k, type=int),
     "paths": _option("--paths", "fixed-paths: shortest or disjoint.", FixedPaths().paths, metavar="KIND"),
 }
-ADDING = ("m", "sample", "seed", "baseline", "fallback")
-PLANNING = tuple(_PLANNER_OPTIONS)
-
-
-def chosen_planner(name: str, options: dict[str, Any]) -> Planner:
-    """The planner with the options that were given."""
-    return planner_named(name, {option: value for option, value in options.items() if value is not None})
+"""The options of all planners; one that is not given keeps its planner's default."""
+planner_options = gathered("options", options_given, *PLANNER_OPTIONS.values())
+neighbourhood_options = gathered(
+    "planner",
+    lambda **options: planner_named(Neighbourhood.name, options_given(**options)),
+    *(PLANNER_OPTIONS[each.name] for each in fields(Neighbourhood)),
+)

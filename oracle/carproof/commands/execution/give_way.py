@@ -5,14 +5,12 @@ import msgspec
 
 from carp_spec import Refusal, ResourceId, Visit
 from carp_spec.documents.solutions import write_solution
-from carp_spec.requests import require_tick
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import InputFile, Output, naming, read_bytes, read_sound
-from carproof.command_line.options import asks_for_a_robot, examples, gives_plans
+from carproof.command_line.files import InputFile, Output, naming, read_bytes
+from carproof.command_line.options import Asked, asks_for_a_robot, examples, gives_plans
 from carproof.command_line.tables import print_line, print_table, remark
 from carproof.engines import engine_named
 from carproof.execution.giving_way import give_way
-from carproof.requests import robot_called
 
 
 @click.command(
@@ -25,16 +23,7 @@ from carproof.requests import robot_called
 @asks_for_a_robot
 @click.option("--route", type=InputFile(), help="A list of visits [resource, enter, leave] that ROBOT keeps to.")
 @gives_plans
-def command(  # noqa: PLR0913 - one parameter for each argument and option
-    *,
-    instance: str,
-    solution: str,
-    robot: str,
-    now: int,
-    route: str | None,
-    engine: str | None,
-    output: Output,
-) -> Answer:
+def command(*, asked: Asked, route: str | None, engine: str | None, output: Output) -> Answer:
     """Give ROBOT the earliest plan that the histories of the others allow, and plan the others around it.
 
     Robots keep the visits that they have made by --now. The command tries to change few plans of others. A robot that
@@ -43,11 +32,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     Exit codes: 0 no lawful update (with --route: on that route) lets ROBOT arrive earlier, 1 it goes, but perhaps not
     first, or there is no plan and nothing is written, 2 bad input.
     """
-    require_tick(now, "$.now")
-    problem, sound = read_sound(instance, solution, *([route] if route else []))
-    id = robot_called(problem, robot)
+    problem, sound, id = asked.read(*([route] if route else []))
     visits = None if route is None else read_route(route)
-    found = give_way(problem, sound, id, now, engine_named(engine), visits)
+    found = give_way(problem, sound, id, asked.now, engine_named(engine), visits)
     for each in found.stuck:
         remark(f"Robot {each} finds no plan around the earliest one of robot {id}.")
     if found.solution is None:

@@ -64,7 +64,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     Exit codes: 0 each plan is certified, 1 a plan is late, 2 bad input, 3 no plan is late, and some are undecided.
     """
     until = deadline(time_left(context, seconds))
-    instance, given, format = problem.read_with_format()
+    instance, given, format = problem.read()
     with naming(problem.solution or ""):
         sound = sound_solution(instance, given)
     look = audit_in_some_order if find_order or format != OWN_FORMAT else audit_in_order

@@ -10,13 +10,13 @@ from carp_spec.documents.decoding import write
 from carp_spec.documents.solutions import solution_document
 from carp_spec.documents.verdicts import write_verdict
 from carp_verify.bound.rules import ContradictionError
-from carp_verify.footprint.rules import FOOTPRINT_RULES
+from carp_verify.footprint.rules import FOOTPRINT_RULES, Footprint
 from carp_verify.kernel import KernelVerdict, ask, request
 from carproof.api.judging import check
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, naming
 from carproof.command_line.foreign import Problem, solution_files
-from carproof.command_line.options import examples, kernel_option, output_options
+from carproof.command_line.options import examples, kernel_option, output_options, read_by
 from carproof.command_line.tables import print_line, print_table, say
 from carproof.commands.judge.second_opinion import certified
 from carproof.layouts.settings import footprint as footprint_of
@@ -43,10 +43,14 @@ from carproof.registry import RULES
 @kernel_option
 @click.option("--z3", is_flag=True, help="Let z3 confirm that plans keep capacities and avoid exchanges.")
 @click.option(
-    "--footprint", help="The size of vehicles, 900x600mm or a radius like 450mm, to check that they keep apart."
+    "--footprint",
+    callback=read_by(footprint_of),
+    help="The size of vehicles, 900x600mm or a radius like 450mm, to check that they keep apart.",
 )
 @click.option(
-    "--cells", help="With --footprint: no resource is a lane, and a step of the positions is so long, like 1m."
+    "--cells",
+    callback=read_by(step_of_cells),
+    help="With --footprint: no resource is a lane, and a step of the positions is so long, like 1m.",
 )
 @click.option("--require-all", is_flag=True, help="Answer no also if a robot has no plan.")
 @click.option("--all", "everything", is_flag=True, help="List every violation, however many there are.")
@@ -56,8 +60,8 @@ def command(  # noqa: PLR0913 - an argument an option
     problem: Problem,
     kernel: bool,
     z3: bool,
-    footprint: str | None,
-    cells: str | None,
+    footprint: Footprint | None,
+    cells: int | None,
     require_all: bool,
     everything: bool,
     output: Output,
@@ -87,14 +91,12 @@ def command(  # noqa: PLR0913 - an argument an option
     """
     if footprint is not None and (kernel or z3):
         raise click.UsageError("--kernel and --z3 decide the law alone, which has no sizes; check --footprint apart.")
-    size = None if footprint is None else footprint_of(footprint)
-    step = None if cells is None else step_of_cells(cells)
-    instance, given = problem.read(as_named=True)
+    instance, given, _ = problem.read(as_named=True)
     if z3:
         return certified(instance, given, output.as_json)
     most = None if everything else MOST_LISTED
     with naming(problem.names[0]):
-        verdict = check(instance, given, most, size, step)
+        verdict = check(instance, given, most, footprint, cells)
     decided = kernel_verdict(instance, given, verdict) if kernel else None
     document = write_verdict(verdict) if decided is None else write(decided)
     if output.write(document):

@@ -1,5 +1,6 @@
 """`carproof view`: a solution as a page or a picture."""
 
+from functools import partial
 from pathlib import Path
 
 import click
@@ -7,7 +8,7 @@ import click
 from carp_spec.documents.solutions import read_trace
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, Output, naming, read_file, refuse_two_standard_inputs
-from carproof.command_line.foreign import Problem, instance_and_perhaps_solution
+from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import examples, output_option
 from carproof.command_line.tables import print_table
 from carproof.viewer.limits import refuse_tick
@@ -30,7 +31,7 @@ PAGE, PICTURE = (".html", ".htm"), ".svg"
         "carproof view --map town.map --scen town.scen result.txt -o result.html",
     ),
 )
-@instance_and_perhaps_solution
+@partial(solution_files, needs_solution=False)
 @click.option("--at", type=int, metavar="TICK", help="Draw the map at this tick, as a still SVG.")
 @click.option("--chart", is_flag=True, help="Draw the chart of resources by time, as a still SVG.")
 @click.option("--trace", type=InputFile(), help="Show what has happened beside the plans; page only.")
@@ -61,7 +62,7 @@ def command(problem: Problem, at: int | None, chart: bool, trace: str | None, fi
     if problem.solution is None:
         instance, solution = problem.read_instance(), None
     else:
-        instance, solution = problem.read(as_named=True)
+        instance, solution, _ = problem.read(as_named=True)
     happened = None if trace is None else read_file(trace, read_trace)
     title = problem.title
     with naming(problem.solution or problem.instance or problem.names[0]):

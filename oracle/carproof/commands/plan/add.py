@@ -1,25 +1,15 @@
 """`carproof add`: add one robot to given plans, by the neighbourhood planner."""
 
-from typing import Any, cast
-
 import click
 
 from carp_spec import Neighbourhood
 from carp_spec.documents.solutions import write_solution
-from carp_spec.requests import require_new_robot, require_tick
+from carp_spec.requests import require_new_robot
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import Output, naming, read_sound
-from carproof.command_line.options import (
-    ADDING,
-    asks_for_a_robot,
-    chosen_planner,
-    examples,
-    gives_plans,
-    planner_options,
-)
+from carproof.command_line.files import Output, naming
+from carproof.command_line.options import Asked, asks_for_a_robot, examples, gives_plans, neighbourhood_options
 from carproof.command_line.output import show_addition
 from carproof.engines import engine_named
-from carproof.requests import robot_called
 
 
 @click.command(
@@ -32,18 +22,9 @@ from carproof.requests import robot_called
     ),
 )
 @asks_for_a_robot
-@planner_options(*ADDING)
+@neighbourhood_options
 @gives_plans
-def command(
-    *,
-    instance: str,
-    solution: str,
-    robot: str,
-    now: int,
-    engine: str | None,
-    output: Output,
-    **options: Any,  # noqa: ANN401 - `planner_named` checks them
-) -> Answer:
+def command(*, asked: Asked, planner: Neighbourhood, engine: str | None, output: Output) -> Answer:
     """Add ROBOT, which INSTANCE has, to the plans of SOLUTION, by the neighbourhood planner.
 
     Robots near it may get new plans, but keep the visits that they have made by --now. A robot that SOLUTION does not
@@ -51,13 +32,10 @@ def command(
 
     Exit codes: 0 the robot has a plan, 1 it has none and all plans stay as they were, 2 bad input.
     """
-    require_tick(now, "$.now")
-    chosen = cast("Neighbourhood", chosen_planner(Neighbourhood.name, options))
-    problem, before = read_sound(instance, solution)
-    id = robot_called(problem, robot)
+    problem, before, id = asked.read()
     require_new_robot(problem, before, id, "ROBOT")
-    with naming(instance):
-        after = engine_named(engine).add(problem, before, id, now, chosen)
+    with naming(asked.instance):
+        after = engine_named(engine).add(problem, before, id, asked.now, planner)
     if output.write(write_solution(after)):
-        show_addition(problem, before, after, id, now)
+        show_addition(problem, before, after, id, asked.now)
     return Answer.of(id not in after.unplanned)

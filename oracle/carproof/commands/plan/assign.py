@@ -1,28 +1,18 @@
 """`carproof assign`: give a robot under way or parked further stops."""
 
 from pathlib import Path
-from typing import Any, cast
 
 import click
 
 from carp_spec import Instance, Neighbourhood, ResourceId, Stop
 from carp_spec.documents.instances import write_instance
 from carp_spec.documents.solutions import write_solution
-from carp_spec.requests import require_tick
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import Output, OutputFile, read_sound, write_whole
-from carproof.command_line.options import (
-    ADDING,
-    asks_for_a_robot,
-    chosen_planner,
-    examples,
-    gives_plans,
-    planner_options,
-)
+from carproof.command_line.files import Output, OutputFile, write_whole
+from carproof.command_line.options import Asked, asks_for_a_robot, examples, gives_plans, neighbourhood_options
 from carproof.command_line.output import show_addition
 from carproof.command_line.tables import print_line
 from carproof.engines import engine_named
-from carproof.requests import robot_called
 
 
 @click.command(
@@ -35,19 +25,16 @@ from carproof.requests import robot_called
 @asks_for_a_robot
 @click.argument("stops", nargs=-1, required=True, metavar="STOP...")
 @click.option("--instance", "further", type=OutputFile(), help="Write INSTANCE with the further stops to this file.")
-@planner_options(*ADDING)
+@neighbourhood_options
 @gives_plans
-def command(  # noqa: PLR0913 - one parameter for each argument and option
+def command(
     *,
-    instance: str,
-    solution: str,
-    robot: str,
+    asked: Asked,
     stops: tuple[str, ...],
-    now: int,
-    engine: str | None,
     further: Path | None,
+    planner: Neighbourhood,
+    engine: str | None,
     output: Output,
-    **options: Any,  # noqa: ANN401 - `planner_named` checks them
 ) -> Answer:
     """Give ROBOT further stops at the tick --now: a STOP is a resource, or RESOURCE:SERVICE with ticks of service.
 
@@ -57,19 +44,16 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     Exit codes: 0 it got the stops, 1 no plan was found, and nothing changed, 2 bad input.
     """
-    require_tick(now, "$.now")
-    chosen = cast("Neighbourhood", chosen_planner(Neighbourhood.name, options))
-    problem, before = read_sound(instance, solution)
-    id = robot_called(problem, robot)
+    problem, before, id = asked.read()
     wanted = [stop_called(problem, each) for each in stops]
-    assigned, after = engine_named(engine).assign(problem, before, id, wanted, now, chosen)
+    assigned, after = engine_named(engine).assign(problem, before, id, wanted, asked.now, planner)
     if further is not None:
         write_whole(further, write_instance(assigned))
     if output.write(write_solution(after)):
         if assigned is problem:
             print_line(f"robot {id} keeps its stops: no plan over further ones was found")
         else:
-            show_addition(problem, before, after, id, now)
+            show_addition(problem, before, after, id, asked.now)
     return Answer.of(assigned is not problem)
 
 

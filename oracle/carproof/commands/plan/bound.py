@@ -9,7 +9,7 @@ from carp_spec.documents.decoding import write
 from carp_spec.inputs.options import BOUND_SECONDS
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, Output, naming, refuse_two_standard_inputs
-from carproof.command_line.foreign import MovingAI, Problem, from_option, movingai_options, read_solution_of
+from carproof.command_line.foreign import MovingAI, Problem, benchmark_options, from_option, read_solution_of
 from carproof.command_line.options import examples, output_options
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import warm
@@ -31,7 +31,7 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "total cost", "gap", "step
     ),
 )
 @click.argument("instance", type=InputFile(), required=False)
-@movingai_options
+@benchmark_options
 @click.option(
     "--seconds", type=click.IntRange(min=1), help=f"For how long to search at most.  [default: {BOUND_SECONDS}]"
 )
@@ -42,9 +42,7 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "total cost", "gap", "step
 def command(  # noqa: PLR0913 - one parameter for each argument and option
     *,
     instance: str | None,
-    map: str | None,
-    scen: str | None,
-    agents: int | None,
+    benchmark: MovingAI | None,
     seconds: int | None,
     steps: int | None,
     plans: str | None,
@@ -62,7 +60,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     require("pysat")
     from carp_optimum.bound import Progress, lower_bound  # noqa: PLC0415 - loads the planners
 
-    benchmark = MovingAI.of(map, scen, agents)
     if (instance is None) == (benchmark is None):
         raise click.UsageError("Give INSTANCE, or --map and --scen.")
     given = Problem(instance, benchmark, plans, format)

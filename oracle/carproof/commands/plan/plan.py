@@ -11,8 +11,7 @@ from carp_spec.inputs.options import require_polish_options
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, naming, read_instance_file
 from carproof.command_line.options import (
-    PLANNING,
-    chosen_planner,
+    PLANNER_OPTIONS,
     examples,
     gives_plans,
     instance_argument,
@@ -23,6 +22,7 @@ from carproof.command_line.output import show_found, show_solution
 from carproof.command_line.planning import plan_showing
 from carproof.command_line.time_left import time_left, time_of_compiling
 from carproof.engines import engine_named, fastest_with, repaired, repairs_by_default
+from carproof.planner_options import planner_named
 from carproof.progress import found_so_far, search_progress
 
 FOR_FIRST_PLANS = 0.15
@@ -42,7 +42,7 @@ FOR_FIRST_PLANS = 0.15
 )
 @instance_argument
 @planner_option
-@planner_options(*PLANNING)
+@planner_options
 @click.option(
     "--repair/--no-repair",
     default=None,
@@ -63,7 +63,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     iterations: int | None,
     engine: str | None,
     output: Output,
-    **options: Any,  # noqa: ANN401 - `planner_named` checks them
+    options: dict[str, Any],
 ) -> Answer:
     """Plan all robots of INSTANCE, a document or - for standard input.
 
@@ -80,8 +80,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """
     if seconds is not None or iterations is not None:
         _refuse_planner_options(context)
-        return _plan_within(context, instance, seconds, iterations, options["seed"] or 0, output)
-    chosen = chosen_planner(planner, options)
+        return _plan_within(context, instance, seconds, iterations, options.get("seed", 0), output)
+    chosen = planner_named(planner, options)
     problem = read_instance_file(instance)
     engine = engine or fastest_with(chosen)
     engine_named(engine)  # compiled before the clock starts
@@ -102,7 +102,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
 def _refuse_planner_options(context: click.Context) -> None:
     """Refuse options that a search within a time does not have."""
-    for name in (*(each for each in PLANNING if each != "seed"), "planner", "repair", "engine"):
+    for name in (*(each for each in PLANNER_OPTIONS if each != "seed"), "planner", "repair", "engine"):
         source = context.get_parameter_source(name)
         if source is not None and source is not click.core.ParameterSource.DEFAULT:
             message = f"--seconds and --iterations choose among planners by themselves, so there is no --{name}"

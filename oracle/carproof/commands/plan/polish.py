@@ -72,7 +72,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     refuse_two_standard_inputs(*problem.names, bound or "")
     require_polish_options(iterations, seconds, seed)
     require_tick(now)
-    instance, given = problem.read()
+    instance, given, _ = problem.read()
     with naming(problem.solution or ""):
         before = sound_solution(instance, given)
     least = bound_of(instance, bound)

@@ -6,23 +6,13 @@ import click
 
 from carp_spec import plan_cost
 from carp_spec.documents.decoding import write
-from carp_spec.requests import require_tick, sound_solution
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import (
-    Output,
-    OutputFile,
-    naming,
-    read_instance_file,
-    read_solution_file,
-    refuse_two_standard_inputs,
-    write_whole,
-)
-from carproof.command_line.options import asks_for_a_robot, examples, gives_plans
+from carproof.command_line.files import Output, OutputFile, naming, write_whole
+from carproof.command_line.options import Asked, asks_for_a_robot, examples, gives_plans
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import engine_named
 from carproof.judging.unplanned import why_unplanned
 from carproof.protocol.ops.planning import query_document
-from carproof.requests import robot_called
 
 
 @click.command(
@@ -36,16 +26,7 @@ from carproof.requests import robot_called
 @asks_for_a_robot
 @click.option("--certificate", type=OutputFile(), help="Write a proof that no plan arrives earlier to this file.")
 @gives_plans
-def command(  # noqa: PLR0913 - one parameter for each argument and option
-    *,
-    instance: str,
-    solution: str,
-    robot: str,
-    now: int,
-    certificate: Path | None,
-    engine: str | None,
-    output: Output,
-) -> Answer:
+def command(*, asked: Asked, certificate: Path | None, engine: str | None, output: Output) -> Answer:
     """Find the plan with which ROBOT arrives earliest beside the plans of SOLUTION.
 
     Those plans stay as they are. If SOLUTION has a plan of ROBOT, the robot has followed it until --now.
@@ -53,16 +34,11 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     Exit codes: 0 a plan is found, 1 no plan exists, 2 bad input.
     """
-    refuse_two_standard_inputs(instance, solution)
-    require_tick(now, "$.now")
-    problem = read_instance_file(instance)
-    given = read_solution_file(solution)
-    id = robot_called(problem, robot)
-    with naming(solution):
-        committed = sound_solution(problem, given, id)
+    problem, committed, id = asked.read(for_query=True)
+    now = asked.now
     others = [each for each in committed.plans if each.robot != id]
     followed = next((each for each in committed.plans if each.robot == id), None)
-    with naming(instance):
+    with naming(asked.instance):
         if certificate is None:
             plan = engine_named(engine).query(problem, committed.plans, id, now)
         else:

@@ -1,7 +1,6 @@
 """`carproof convert`: instances of benchmarks and layouts, and solutions in the formats of other tools."""
 
-from dataclasses import replace
-from typing import get_args
+from typing import Any, get_args
 
 import click
 
@@ -15,15 +14,15 @@ from carproof.command_line.files import (
     read_instance_file,
     refuse_two_standard_inputs,
 )
-from carproof.command_line.foreign import AGENTS_HELP, MovingAI, formats, read_movingai, read_solution_of
-from carproof.command_line.layouts import LayoutOptions, layout_formats, layout_options, show_layout
-from carproof.command_line.options import examples, first_given, output_options
-from carproof.command_line.orders import OrderOptions, order_options
+from carproof.command_line.foreign import AGENTS_HELP, MovingAI, described, read_solution_of
+from carproof.command_line.layouts import layout_options, order_options, show_layout
+from carproof.command_line.options import examples, output_options
 from carproof.command_line.output import show_instance
 from carproof.formats import ADAPTERS, write_foreign_solution
-from carproof.formats.plans.vda5050 import VERSIONS, write_orders
+from carproof.formats.plans.vda5050 import VERSIONS, OrderSettings, write_orders
 from carproof.layouts import READERS
 
+FORMATS = {**READERS, **ADAPTERS}
 TO_HELP = (
     "Convert a solution to this format, one of those of --from; or vda5050-2 or vda5050-3: an order of VDA 5050 for "
     "each robot, on a line of its own."
@@ -53,9 +52,9 @@ TO_HELP = (
 @click.option(
     "--from",
     "format",
-    type=click.Choice([*READERS, *ADAPTERS]),
+    type=click.Choice([*FORMATS]),
     metavar="FORMAT",
-    help=f"The format of LAYOUT or SOLUTION. {layout_formats()}; {formats()}.  [default: the one that it looks like]",
+    help=f"The format of LAYOUT or SOLUTION. {described(FORMATS)}.  [default: the one that it looks like]",
 )
 @order_options
 @layout_options
@@ -69,8 +68,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     to: str | None,
     format: str | None,
     output: Output,
-    layout: LayoutOptions,
-    orders: OrderOptions,
+    layout: dict[str, Any],
+    orders: dict[str, Any],
 ) -> Answer:
     """Make an instance of a layout or of a MovingAI .map and .scen file, or convert a solution of an instance by --to.
 
@@ -89,15 +88,17 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     The result goes to standard output, or with -o to a file.
     """
-    given = first_given(replace(layout, tick=None) if to in VERSIONS else layout)
-    if first_given(orders) and to not in VERSIONS:
-        raise click.UsageError(f"{first_given(orders)} concerns orders: --to {' or '.join(VERSIONS)}.")
+    version = VERSIONS.get(to or "")
+    if version is not None and "tick" in layout:
+        orders["tick"] = layout.pop("tick")
+    if orders and version is None:
+        raise click.UsageError(f"--{next(iter(orders))} concerns orders: --to {' or '.join(VERSIONS)}.")
     if second is None:
         if agents is not None or to is not None:
             raise click.UsageError("--agents concerns a scenario and --to a solution: give a second file.")
         return show_layout(first, format, layout, after_goal or "park", output)
-    if given:
-        raise click.UsageError(f"{given} concerns a layout, which is one file.")
+    if layout:
+        raise click.UsageError(f"--{next(iter(layout))} concerns a layout, which is one file.")
     refuse_two_standard_inputs(first, second)
     if to is None:
         if format is not None:
@@ -105,7 +106,12 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         return _show_benchmark(MovingAI(first, second, agents, after_goal or "park"), output)
     if agents is not None or after_goal is not None or output.as_json:
         raise click.UsageError("--agents, --after-goal and --json concern instances, and --to concerns a solution.")
-    data = _converted(first, second, format, to, orders, layout.tick)
+    instance = read_instance_file(first)
+    solution = read_solution_of(instance, second, format)
+    if version is None:
+        data = write_foreign_solution(instance, solution, to)
+    else:
+        data = write_orders(instance, solution, OrderSettings(version=version, **orders))
     Output(output.file, as_json=output.file is None).write(data)
     return Answer.YES
 
@@ -114,12 +120,4 @@ def _show_benchmark(benchmark: MovingAI, output: Output) -> Answer:
     first = benchmark.map
     if first != STANDARD_INPUT and read_bytes(first).lstrip().startswith(b"{"):
         raise click.UsageError(f"{first} is no map; to convert a solution of an instance, name a format by --to.")
-    return show_instance(read_movingai(benchmark), output)
-
-
-def _converted(first: str, second: str, format: str | None, to: str, orders: OrderOptions, tick: str | None) -> bytes:
-    instance = read_instance_file(first)
-    solution = read_solution_of(instance, second, format)
-    if to in VERSIONS:
-        return write_orders(instance, solution, orders.settings(to, tick))
-    return write_foreign_solution(instance, solution, to)
+    return show_instance(benchmark.read(), output)
