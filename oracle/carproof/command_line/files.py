@@ -7,10 +7,9 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
 import click
-from click.shell_completion import CompletionItem
 
 from carp_spec import Instance, Refusal, Solution
 from carp_spec.documents.instances import read_instance
@@ -19,53 +18,54 @@ from carp_spec.requests import sound_solution
 from carproof.formats.layouts import layout_named
 
 T = TypeVar("T")
+FileName: TypeAlias = str | os.PathLike[str]
 STANDARD_INPUT = "-"
 STANDARD_OUTPUT = Path("/dev/stdout")
 TAKEN = "carproof.standard-output-is-taken"
+READ = "carproof.standard-input-is-read"
 WRITTEN = "carproof.files-to-write"
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
 
-class InputFile(click.ParamType[str]):
-    """An existing file to read, or `-`; its value is the name. With `folders`, a folder too."""
-
-    name = "file"
+class InputFile(click.Path[str]):
+    """An existing file to read, or for one input of a command `-`; its value is the name. Perhaps a folder too."""
 
     def __init__(self, *, folders: bool = False) -> None:
-        self.folders = folders
+        super().__init__(dir_okay=folders)
 
-    def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
+    def convert(self, value: FileName, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """Refuse a name that cannot be an input, before any work is done."""
-        path = Path(value)
-        if not value:
+        path, name = Path(value), os.fspath(value)
+        if not name:
             self.fail("the name of a file must not be empty.", param, ctx)
-        if value != STANDARD_INPUT and path.is_dir() and not self.folders:
-            self.fail(f"{value}: it is a folder.", param, ctx)
-        if value != STANDARD_INPUT and not path.exists():
-            self.fail(f"{value}: there is no such file.", param, ctx)
-        return value
-
-    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
-        """Let the shell complete it."""
-        del ctx, param
-        return complete_files(incomplete)
-
-
-def complete_files(incomplete: str) -> list[CompletionItem]:
-    """Let the shell complete the name of a file."""
-    return [CompletionItem(incomplete, type="file")]
+        if name == STANDARD_INPUT:
+            if ctx is not None and ctx.meta.get(READ):
+                raise click.UsageError("Only one of the files can be standard input.", ctx)
+            if ctx is not None:
+                ctx.meta[READ] = True
+        elif path.is_dir() and not self.dir_okay:
+            self.fail(f"{name}: it is a folder.", param, ctx)
+        elif not path.exists():
+            self.fail(f"{name}: there is no such file.", param, ctx)
+        return name
 
 
-class OutputFile(click.ParamType[Path]):
+class OutputFile(click.Path[Path]):
     """A file to write; its value is the path."""
 
-    name = "file"
+    def __init__(self) -> None:
+        super().__init__(dir_okay=False)
 
-    def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> Path:
-        """Refuse a name that cannot be written, before any work is done."""
+    def convert(self, value: FileName, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """Refuse a name that cannot be written, before any work is done.
+
+        With `-` standard output is for the document alone, and text for people goes to standard error.
+        """
         if not value:
             self.fail("the name of a file must not be empty.", param, ctx)
-        path = take_standard_output(ctx) if value == "-" else target(Path(value))
+        path = STANDARD_OUTPUT if value == "-" else Path(os.path.realpath(value))
+        if value == "-" and ctx is not None:
+            ctx.meta[TAKEN] = True
         others: dict[Path, object] = {} if ctx is None else ctx.meta.setdefault(WRITTEN, {})
         if others.setdefault(path, param) is not param and (value == "-" or not path.exists() or path.is_file()):
             self.fail(f"{value}: another option writes there too.", param, ctx)
@@ -78,23 +78,6 @@ class OutputFile(click.ParamType[Path]):
         if not os.access(path if path.exists() and not path.is_file() else path.parent, os.W_OK):
             self.fail(f"{value}: it may not be written.", param, ctx)
         return Path(value)
-
-    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
-        """Let the shell complete it."""
-        del ctx, param
-        return complete_files(incomplete)
-
-
-def take_standard_output(ctx: click.Context | None) -> Path:
-    """Reserve standard output for the document of a command; text for people goes to standard error."""
-    if ctx is not None:
-        ctx.meta[TAKEN] = True
-    return STANDARD_OUTPUT
-
-
-def target(path: Path) -> Path:
-    """The file that is written in the end: links are followed, also to files that do not exist yet."""
-    return Path(os.path.realpath(path))
 
 
 def read_bytes(name: str, *, layouts: bool = False) -> bytes:
@@ -129,9 +112,8 @@ def read_file(name: str, decode: Callable[[bytes], T]) -> T:
         return decode(data)
 
 
-def read_sound(instance: str, solution: str, *others: str) -> tuple[Instance, Solution]:
-    """Read an instance and a solution that breaks no rule; `others` are files that the same command reads."""
-    refuse_two_standard_inputs(instance, solution, *others)
+def read_sound(instance: str, solution: str) -> tuple[Instance, Solution]:
+    """Read an instance and a solution that breaks no rule."""
     problem, given = read_instance_file(instance), read_solution_file(solution)
     with naming(solution):
         return problem, sound_solution(problem, given)
@@ -153,12 +135,6 @@ def shown(name: str) -> str:
     return "standard input" if name == STANDARD_INPUT else name
 
 
-def refuse_two_standard_inputs(*names: str) -> None:
-    """Only one of a command's inputs can be standard input."""
-    if names.count(STANDARD_INPUT) > 1:
-        raise click.UsageError("Only one of the files can be standard input.")
-
-
 def write_whole(path: Path, data: bytes) -> None:
     """Write a file whole or not at all: beside it, then in its place. A device or pipe is written as it is."""
     if path == STANDARD_OUTPUT:
@@ -168,7 +144,7 @@ def write_whole(path: Path, data: bytes) -> None:
         if path.exists() and not path.is_file():
             path.write_bytes(data)
         else:
-            _replace(target(path), data)
+            _replace(Path(os.path.realpath(path)), data)
     except OSError as error:
         raise click.ClickException(f"{path}: it cannot be written: {error.strerror}") from error
 

@@ -9,7 +9,7 @@ from typing import Any, TypeVar, cast
 import click
 
 from carp_spec import AfterGoal, Instance, Solution
-from carproof.command_line.files import InputFile, read_bytes, read_instance_file, refuse_two_standard_inputs, shown
+from carproof.command_line.files import InputFile, read_bytes, read_instance_file, shown
 from carproof.command_line.options import gathered
 from carproof.formats import ADAPTERS, format_of, named_as, read_foreign_solution
 from carproof.formats.movingai import movingai_instance, read_map, read_scenario
@@ -81,10 +81,9 @@ class Problem:
     format: str | None = None
 
     @property
-    def names(self) -> tuple[str, ...]:
-        """The names of the files."""
-        files = (self.instance,) if self.benchmark is None else (self.benchmark.map, self.benchmark.scen)
-        return tuple(each for each in (*files, self.solution) if each is not None)
+    def name(self) -> str:
+        """The name of the file of the instance, or of the map."""
+        return self.benchmark.map if self.benchmark else self.instance or ""
 
     @property
     def title(self) -> str:
@@ -102,7 +101,6 @@ class Problem:
 
         With `as_named`, robots of a benchmark, which has no names for them, get the names in the solution.
         """
-        refuse_two_standard_inputs(*self.names)
         instance = self.read_instance()
         assert self.solution is not None  # noqa: S101 - it is asked only where there is one
         data, file = read_bytes(self.solution), shown(self.solution)

@@ -10,15 +10,7 @@ import click
 from carp_spec import FixedPaths, Instance, Neighbourhood, RobotId, Shuffled, Solution
 from carp_spec.inputs.options import SEARCH_SECONDS
 from carp_spec.requests import require_tick, sound_solution
-from carproof.command_line.files import (
-    InputFile,
-    Output,
-    OutputFile,
-    naming,
-    read_instance_file,
-    read_solution_file,
-    refuse_two_standard_inputs,
-)
+from carproof.command_line.files import InputFile, Output, OutputFile, naming, read_instance_file, read_solution_file
 from carproof.engines import ENGINES
 from carproof.generate import Range
 from carproof.planner_options import PLANNERS, planner_named
@@ -114,13 +106,12 @@ class Asked:
     robot: str
     now: int
 
-    def read(self, *others: str, for_query: bool = False) -> tuple[Instance, Solution, RobotId]:
-        """The instance, its solution, which breaks no rule, and the robot; `others` are files that are read too.
+    def read(self, *, for_query: bool = False) -> tuple[Instance, Solution, RobotId]:
+        """The instance, its solution, which breaks no rule, and the robot.
 
         For a query, the plan of the robot itself may break rules together with those of others.
         """
         require_tick(self.now)
-        refuse_two_standard_inputs(self.instance, self.solution, *others)
         problem, given = read_instance_file(self.instance), read_solution_file(self.solution)
         id = robot_called(problem, self.robot)
         with naming(self.solution):

@@ -27,7 +27,7 @@ def command(*, instance: str, solution: str, trace: str, as_json: bool) -> Answe
 
     Exit codes: 0 no rule is broken, 1 a rule is broken, 2 bad input.
     """
-    problem, sound = read_sound(instance, solution, trace)
+    problem, sound = read_sound(instance, solution)
     done = read_file(trace, read_trace)
     violations = trace_violations(problem, sound, done)
     verdict = Verdict(total_cost(problem, sound.plans), len(sound.unplanned), violations)

@@ -32,7 +32,7 @@ def command(*, asked: Asked, route: str | None, engine: str | None, output: Outp
     Exit codes: 0 no lawful update (with --route: on that route) lets ROBOT arrive earlier, 1 it goes, but perhaps not
     first, or there is no plan and nothing is written, 2 bad input.
     """
-    problem, sound, id = asked.read(*([route] if route else []))
+    problem, sound, id = asked.read()
     visits = None if route is None else read_route(route)
     found = give_way(problem, sound, id, asked.now, engine_named(engine), visits)
     for each in found.stuck:

@@ -73,7 +73,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """
     if beyond and grants is not None:
         raise click.UsageError("--beyond lists grants, and --grants asks about some: give one of them.")
-    problem, sound = read_sound(instance, solution, trace, *([] if grants is None else [grants]))
+    problem, sound = read_sound(instance, solution)
     done = read_file(trace, read_trace)
     if grants is not None:
         wanted = read_file(grants, read_grants)

@@ -6,14 +6,7 @@ from carp_spec import total_cost
 from carp_spec.documents.solutions import read_trace, write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, naming, read_file, read_sound
-from carproof.command_line.options import (
-    engine_option,
-    examples,
-    instance_argument,
-    output_options,
-    solution_argument,
-    trace_argument,
-)
+from carproof.command_line.options import examples, gives_plans, instance_argument, solution_argument, trace_argument
 from carproof.command_line.tables import counted, print_line
 from carproof.engines import engine_named
 
@@ -28,8 +21,7 @@ from carproof.engines import engine_named
 @instance_argument
 @solution_argument
 @trace_argument
-@engine_option
-@output_options
+@gives_plans
 def command(*, instance: str, solution: str, trace: str, engine: str | None, output: Output) -> Answer:
     """Give the plans of SOLUTION new ticks: the visits of TRACE stay, the others follow in order as early as possible.
 
@@ -38,7 +30,7 @@ def command(*, instance: str, solution: str, trace: str, engine: str | None, out
 
     Exit codes: 0 there are new plans, 2 bad input, or no lawful plan has such a history.
     """
-    problem, sound = read_sound(instance, solution, trace)
+    problem, sound = read_sound(instance, solution)
     done = read_file(trace, read_trace)
     with naming(trace):
         after = engine_named(engine).retime(problem, sound, done)

@@ -95,7 +95,7 @@ def command(  # noqa: PLR0913 - an argument an option
     if z3:
         return certified(instance, given, output.as_json)
     most = None if everything else MOST_LISTED
-    with naming(problem.names[0]):
+    with naming(problem.name):
         verdict = check(instance, given, most, footprint, cells)
     decided = kernel_verdict(instance, given, verdict) if kernel else None
     document = write_verdict(verdict) if decided is None else write(decided)

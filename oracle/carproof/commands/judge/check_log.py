@@ -13,15 +13,7 @@ from carp_spec.documents.decoding import write
 from carp_spec.documents.verdicts import ViolationDocument
 from carp_spec.execution.logs import judge_log
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import (
-    InputFile,
-    naming,
-    print_document,
-    read_bytes,
-    read_instance_file,
-    refuse_two_standard_inputs,
-    shown,
-)
+from carproof.command_line.files import InputFile, naming, print_document, read_bytes, read_instance_file, shown
 from carproof.command_line.options import examples, json_option
 from carproof.command_line.tables import print_line, print_table, say
 from carproof.formats.logs import LOGS, read_log, read_log_on_map
@@ -59,7 +51,6 @@ def command(
     """
     if len(files) != 1 + (map is None):
         raise click.UsageError("Give INSTANCE and LOG, or --map and LOG.")
-    refuse_two_standard_inputs(*files, *([map] if map else []))
     data, name = read_bytes(files[-1]), shown(files[-1])
     if map is None:
         instance = read_instance_file(files[0])

@@ -18,7 +18,6 @@ from carproof.command_line.files import (
     read_file,
     read_instance_file,
     read_solution_file,
-    refuse_two_standard_inputs,
 )
 from carproof.command_line.options import examples, json_option, kernel_option
 from carproof.command_line.tables import print_line, print_table
@@ -67,7 +66,6 @@ def command(*, files: tuple[str, ...], instance: str | None, kernel: bool, as_js
     *others, file = files
     if len(files) > MOST_FILES:
         _refuse(f"there are {len(files)} files")
-    refuse_two_standard_inputs(*files)
     if Path(file).is_dir():
         if len(others) > 1:
             _refuse("a proof directory needs no solution")

@@ -7,7 +7,7 @@ import click
 
 from carp_spec.documents.solutions import read_trace
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import InputFile, Output, naming, read_file, refuse_two_standard_inputs
+from carproof.command_line.files import InputFile, Output, naming, read_file
 from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import examples, output_option
 from carproof.command_line.tables import print_table
@@ -58,14 +58,13 @@ def command(problem: Problem, at: int | None, chart: bool, trace: str | None, fi
     if problem.solution is None and (is_still or trace is not None):
         raise click.UsageError("--at, --chart and --trace show plans: give SOLUTION too.")
     refuse_suffix(file, is_still=is_still, is_alone=problem.solution is None)
-    refuse_two_standard_inputs(*problem.names, *([] if trace is None else [trace]))
     if problem.solution is None:
         instance, solution = problem.read_instance(), None
     else:
         instance, solution, _ = problem.read(as_named=True)
     happened = None if trace is None else read_file(trace, read_trace)
     title = problem.title
-    with naming(problem.solution or problem.instance or problem.names[0]):
+    with naming(problem.solution or problem.name):
         if solution is None:
             is_picture = file is not None and file.suffix.lower() == PICTURE
             drawn = view_map(instance, title=title) if is_picture else view(instance, title=title)

@@ -8,7 +8,7 @@ from carp_spec import Instance, judge, total_cost
 from carp_spec.documents.decoding import write
 from carp_spec.inputs.options import BOUND_SECONDS
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import InputFile, Output, naming, refuse_two_standard_inputs
+from carproof.command_line.files import InputFile, Output, naming
 from carproof.command_line.foreign import MovingAI, Problem, benchmark_options, from_option, read_solution_of
 from carproof.command_line.options import examples, output_options
 from carproof.command_line.tables import print_line, print_table
@@ -62,10 +62,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     if (instance is None) == (benchmark is None):
         raise click.UsageError("Give INSTANCE, or --map and --scen.")
-    given = Problem(instance, benchmark, plans, format)
-    refuse_two_standard_inputs(*given.names)
+    given = Problem(instance, benchmark)
     problem = given.read_instance()
-    with naming(given.names[0]):
+    with naming(given.name):
         known = total_of(problem, plans, format)
     limit = BOUND_SECONDS if seconds is None and steps is None else seconds
     seen: list[Progress] = []
@@ -76,7 +75,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     warm()
     started = perf_counter()
-    with naming(given.names[0]), search_progress("bounding", steps, limit) as show:
+    with naming(given.name), search_progress("bounding", steps, limit) as show:
         certificate = lower_bound(problem, limit, steps, keep)
     took = perf_counter() - started
     lost = [problem.robot[robot] for robot, least in certificate.robots if least is None]

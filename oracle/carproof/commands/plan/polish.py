@@ -10,7 +10,7 @@ from carp_spec.inputs.options import require_polish_options
 from carp_spec.polish_rules import ITERATIONS, last_round
 from carp_spec.requests import require_tick, sound_solution
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import InputFile, Output, naming, read_file, refuse_two_standard_inputs
+from carproof.command_line.files import InputFile, Output, naming, read_file
 from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import examples, gives_plans, now_option
 from carproof.command_line.output import show_unplanned
@@ -69,7 +69,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     Exit codes: 0 every robot has a plan, 1 some robot has none, 2 bad input.
     """
-    refuse_two_standard_inputs(*problem.names, bound or "")
     require_polish_options(iterations, seconds, seed)
     require_tick(now)
     instance, given, _ = problem.read()
@@ -79,7 +78,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     played = 0
     compiling = 0.0 if seconds is None else time_of_compiling()
     started = perf_counter()
-    with naming(problem.names[0]), search_progress("polishing", last_round(iterations, seconds), seconds) as show:
+    with naming(problem.name), search_progress("polishing", last_round(iterations, seconds), seconds) as show:
 
         def advance(rounds: int, unplanned: int, total: int) -> None:
             nonlocal played

@@ -6,14 +6,7 @@ import click
 
 from carp_spec import AfterGoal
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import (
-    STANDARD_INPUT,
-    InputFile,
-    Output,
-    read_bytes,
-    read_instance_file,
-    refuse_two_standard_inputs,
-)
+from carproof.command_line.files import STANDARD_INPUT, InputFile, Output, read_bytes, read_instance_file
 from carproof.command_line.foreign import AGENTS_HELP, MovingAI, described, read_solution_of
 from carproof.command_line.layouts import layout_options, order_options, show_layout
 from carproof.command_line.options import examples, output_options
@@ -99,7 +92,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         return show_layout(first, format, layout, after_goal or "park", output)
     if layout:
         raise click.UsageError(f"--{next(iter(layout))} concerns a layout, which is one file.")
-    refuse_two_standard_inputs(first, second)
     if to is None:
         if format is not None:
             raise click.UsageError("--from and --to concern a solution.")
