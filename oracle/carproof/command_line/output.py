@@ -1,16 +1,17 @@
 """The output of commands: documents for programs, tables for people."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from carp_spec import Instance, Plan, RobotId, Solution, total_cost
+from carp_spec import Instance, Plan, RobotId, Solution, Violation, total_cost
 from carp_spec.check import MOST_LISTED
 from carp_spec.documents.instances import write_instance
 from carp_spec.rule import interval
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output
-from carproof.command_line.tables import print_line, print_table
+from carproof.command_line.tables import print_line, print_table, say
 from carproof.engines import have_plans_beside, sum_of_shortest_paths
 from carproof.judging.unplanned import why_unplanned
 
@@ -36,28 +37,25 @@ def show_solution(
 ) -> None:
     """Print a table of the result, and the reasons why robots are unplanned; a fleet holds the plans."""
     shortest = sum_of_shortest_paths(instance, (plan.robot for plan in solution.plans), fleet)
-    _show_row(instance, planner, len(solution.unplanned), total_cost(instance, solution.plans), shortest, seconds)
+    _show_row(instance, solution, planner, shortest, seconds)
     show_unplanned(instance, solution, solution.unplanned, fleet=fleet)
 
 
 def show_found(instance: Instance, found: "Found", planner: str, seconds: float) -> None:
     """Print what was found within a time, in no time: of robots that are left out nobody asks why."""
     unplanned = found.solution.unplanned
-    total = total_cost(instance, found.solution.plans)
-    _show_row(instance, planner, len(unplanned), total, found.shortest, seconds)
+    _show_row(instance, found.solution, planner, found.shortest, seconds)
     for robot in unplanned[:MOST_LISTED]:
         print_line(f"unplanned: robot {robot}: no plan was found for it in this time")
     if len(unplanned) > MOST_LISTED:
         print_line(f"unplanned: and {len(unplanned) - MOST_LISTED} more")
 
 
-def _show_row(
-    instance: Instance, planner: str, unplanned: int, total: int, shortest: int | None, seconds: float
-) -> None:
+def _show_row(instance: Instance, solution: Solution, planner: str, shortest: int | None, seconds: float) -> None:
+    total = total_cost(instance, solution.plans)
     ratio = f"{total / shortest:.4f}" if shortest else "-"
-    known = "-" if shortest is None else shortest
-    row = (planner, len(instance.robots), unplanned, total, known, ratio, f"{seconds:.2f} s")
-    print_table(COLUMNS, [row], numbers=COLUMNS[1:])
+    row = [planner, len(instance.robots), len(solution.unplanned), total, "-" if shortest is None else shortest, ratio]
+    print_table(COLUMNS, [[*row, f"{seconds:.2f} s"]], numbers=COLUMNS[1:])
 
 
 def show_unplanned(
@@ -86,6 +84,18 @@ def show_addition(instance: Instance, before: Solution, after: Solution, robot: 
     print_line(f"robot {robot} arrives at tick {plans[robot].visits[-1].enter}")
     print_line(f"plans of other robots that changed: {', '.join(changed) or 'none'}")
     print_line(f"total cost {total_cost(instance, before.plans)} before, {total_cost(instance, after.plans)} now")
+
+
+def show_violations(violations: Sequence[Violation], most: int | None) -> None:
+    """Print the violations one a line, then how many there are of each rule; `most` of a rule may stand for more."""
+    for violation in violations:
+        print_line(str(violation))
+    count = Counter(violation.rule for violation in violations)
+    if count:
+        rows = [(rule, f"{number} or more" if number == most else number) for rule, number in count.items()]
+        say()
+        print_table(["rule", "violations"], rows, numbers=["violations"])
+        say()
 
 
 def shown_plan(plan: Plan) -> str:

@@ -1,6 +1,8 @@
 """`carproof check`: whether a solution, in carproof's format or another planner's, breaks a rule."""
 
-from collections import Counter
+import json
+from dataclasses import asdict
+from time import perf_counter
 
 import click
 
@@ -10,18 +12,18 @@ from carp_spec.documents.decoding import write
 from carp_spec.documents.solutions import solution_document
 from carp_spec.documents.verdicts import write_verdict
 from carp_verify.bound.rules import ContradictionError
-from carp_verify.footprint.rules import FOOTPRINT_RULES, Footprint
+from carp_verify.footprint.rules import Footprint
 from carp_verify.kernel import KernelVerdict, ask, request
 from carproof.api.judging import check
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import Output, naming
+from carproof.command_line.files import Output, naming, print_document
 from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import examples, kernel_option, output_options, read_by
-from carproof.command_line.tables import print_line, print_table, say
-from carproof.commands.judge.second_opinion import certified
+from carproof.command_line.output import show_violations
+from carproof.command_line.tables import counted, print_line, remark
 from carproof.layouts.settings import footprint as footprint_of
 from carproof.layouts.settings import step_of_cells
-from carproof.registry import RULES
+from carproof.progress import progress
 
 
 @click.command(
@@ -100,7 +102,10 @@ def command(  # noqa: PLR0913 - an argument an option
     decided = kernel_verdict(instance, given, verdict) if kernel else None
     document = write_verdict(verdict) if decided is None else write(decided)
     if output.write(document):
-        print_verdict(verdict, most, require_all)
+        show_violations(verdict.violations, most)
+        is_incomplete = verdict.valid and verdict.unplanned and require_all
+        result = "INCOMPLETE" if is_incomplete else "no rule is broken" if verdict.valid else "INVALID"
+        print_line(f"{result}: total cost {verdict.cost}, unplanned robots {verdict.unplanned}")
         if decided is not None:
             print_line(f"decided by {decided.by}")
     return Answer.of(verdict.valid and not (require_all and verdict.unplanned))
@@ -115,17 +120,29 @@ def kernel_verdict(instance: Instance, solution: Solution, verdict: Verdict) -> 
     return answer
 
 
-def print_verdict(verdict: Verdict, most: int | None, require_all: bool = False) -> None:
-    """Print the violations one a line, then how many there are of each rule; `most` of a rule may stand for more."""
-    for violation in verdict.violations:
-        print_line(str(violation))
-    count = Counter(violation.rule for violation in verdict.violations)
-    if count:
-        say()
-        numbers = {rule: f"{number} or more" if number == most else number for rule, number in count.items()}
-        broken = [(rule.id, numbers[rule.id]) for rule in (*RULES, *FOOTPRINT_RULES) if rule.id in numbers]
-        print_table(["rule", "violations"], broken, numbers=["violations"])
-        say()
-    broken_or_not = "no rule is broken" if verdict.valid else "INVALID"
-    result = "INCOMPLETE" if verdict.valid and verdict.unplanned and require_all else broken_or_not
-    print_line(f"{result}: total cost {verdict.cost}, unplanned robots {verdict.unplanned}")
+def certified(instance: Instance, solution: Solution, as_json: bool) -> Answer:
+    """Print what z3 says of a solution that `check` accepts: too full at no tick at all, and no exchange."""
+    from carp_verify.certificate import certify, visited  # noqa: PLC0415 - loads z3
+    from carp_verify.lemmas.smt import Undecided  # noqa: PLC0415
+
+    started = perf_counter()
+    try:
+        with progress("certifying", len(visited(instance, solution.plans))) as advance:
+            found = certify(instance, solution, advance)
+    except Undecided as undecided:
+        remark(f"Undecided: {undecided}.")
+        return Answer.UNDECIDED
+    if as_json:
+        print_document(json.dumps({"accepted": found.accepted, **asdict(found)}).encode() + b"\n")
+        return Answer.of(found.accepted)
+    for broken in (*found.violations, *found.breaches):
+        print_line(str(broken))
+    asked = f"{found.resources} resources and groups and {found.pairs} pairs of them"
+    if found.accepted:
+        outcome = f"certified: check finds no rule broken, and z3 no tick too full and no exchange in {asked}"
+    elif found.violations:
+        outcome = "REFUSED: check finds a rule broken, and z3 was not asked"
+    else:
+        outcome = f"REFUSED: z3 finds {counted(len(found.breaches), 'tick')} at which a rule is broken in {asked}"
+    print_line(f"{outcome} in {perf_counter() - started:.1f} s")
+    return Answer.of(found.accepted)

@@ -1,6 +1,5 @@
 """`carproof check-log`: whether what robots did breaks a rule, with no plans to compare it with."""
 
-from collections import Counter
 from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import astuple
@@ -15,7 +14,8 @@ from carp_spec.execution.logs import judge_log
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, naming, print_document, read_bytes, read_instance_file, shown
 from carproof.command_line.options import examples, json_option
-from carproof.command_line.tables import print_line, print_table, say
+from carproof.command_line.output import show_violations
+from carproof.command_line.tables import print_line, print_table
 from carproof.formats.logs import LOGS, read_log, read_log_on_map
 from carproof.formats.movingai import read_map
 
@@ -58,27 +58,19 @@ def command(
             log = read_log(data, instance, format, name)
     else:
         instance, log = read_log_on_map(data, read_map(read_bytes(map), shown(map)), format, name)
+    most = None if everything else MOST_LISTED
     with naming(files[-1]):
-        verdict = judge_log(instance, log, None if everything else MOST_LISTED)
+        verdict = judge_log(instance, log, most)
     rows = [astuple(each) for each in verdict.served]
     if as_json:
         violations = msgspec.convert(verdict.violations, tuple[ViolationDocument, ...], from_attributes=True)
         document = {"valid": verdict.valid, "now": log.now, "done": verdict.done, "cost": verdict.cost}
         print_document(write({**document, "served": rows, "violations": violations}))
         return Answer.of(verdict.valid)
-    for violation in verdict.violations:
-        print_line(str(violation))
+    show_violations(verdict.violations, most)
     if served:
-        table = [
-            (str(robot), stop, str(at), enter, "-" if leave is None else leave)
-            for robot, stop, at, enter, leave in rows
-        ]
+        table = [(*others, "-" if leave is None else leave) for *others, leave in rows]
         print_table(["robot", "stop", "resource", "from", "to"], table, numbers=["stop", "from", "to"])
-    count = Counter(violation.rule for violation in verdict.violations)
-    if count:
-        say()
-        print_table(["rule", "violations"], [(rule, str(n)) for rule, n in count.items()], numbers=["violations"])
-        say()
     stops = sum(len(robot.stops) for robot in instance.robots)
     found = f"{len(rows)} of {stops} stops served, {verdict.done} of {len(instance.robots)} robots done"
     print_line(f"{'no rule is broken' if verdict.valid else 'INVALID'} by tick {log.now}: {found}")
