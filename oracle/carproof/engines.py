@@ -132,6 +132,19 @@ def fastest_with(planner: Planner) -> str:
     return "optimized" if isinstance(planner, COMPILED) else "reference"
 
 
+def plan_showing(
+    label: str, engine: str | None, instance: Instance, planner: Planner
+) -> tuple[Solution, "PlannedFleet | None"]:
+    """Plans of all robots; if the optimised planner makes them, with its fleet, and a terminal shows its progress."""
+    if (engine or fastest_with(planner)) == "reference":
+        return engine_named("reference").plan(instance, planner), None
+    compile_what_is_kept()
+    from carp_optimized.planners import plan_with_fleet, steps  # noqa: PLC0415 - loaded when it is first used
+
+    with progress(label, steps(instance, planner)) as advance:
+        return plan_with_fleet(instance, planner, advance)
+
+
 def repairs_by_default(planner: Planner) -> bool:
     """Whether robots that the planner leaves out are repaired where nobody says: not after planners of the literature.
 
@@ -158,7 +171,7 @@ def sum_of_shortest_paths(instance: Instance, robots: Iterable[RobotId], fleet: 
     """
     asked = tuple(robots)
     try:
-        known = fleet or _fleet(instance)
+        known = fleet or fleet_of(instance, ())
         return sum(known.ticks_to_goal(known.index(robot)) for robot in asked)
     except Refusal:  # numbers that only the reference holds
         alone = (engine_named("reference").query(instance, (), robot) for robot in asked)
@@ -177,17 +190,18 @@ def have_plans_beside(
     The numbers may have any size.
     """
     try:
-        beside = fleet or _fleet(instance, committed)
+        beside = fleet or fleet_of(instance, committed)
         return [beside.find(beside.index(robot), None, now) is not None for robot in robots]
     except Refusal:  # numbers that only the reference holds
         query = engine_named("reference").query
         return [query(instance, committed, robot, now) is not None for robot in robots]
 
 
-def _fleet(instance: Instance, committed: Sequence[Plan] = ()) -> "PlannedFleet":
+def fleet_of(instance: Instance, plans: Sequence[Plan]) -> "PlannedFleet":
+    """The compiled fleet of an instance with these plans, in planning order."""
     compile_what_is_kept()
     from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - numba is slow to load
 
     fleet = PlannedFleet(instance)
-    fleet.commit(committed)
+    fleet.commit(plans)
     return fleet

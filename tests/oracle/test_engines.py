@@ -5,8 +5,7 @@ from tests.profiles import draws
 
 from carp_reference import query
 from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, plan_cost
-from carproof.command_line.planning import plan_showing
-from carproof.engines import have_plans_beside, sum_of_shortest_paths
+from carproof.engines import have_plans_beside, plan_showing, sum_of_shortest_paths
 from carproof.testing.strategies import instances
 
 LONG = ResourceGraph((Resource("a", 1, 10**30), Resource("b")), (("a", "b"),))

@@ -20,7 +20,7 @@ from carp_spec.polish_rules import last_round
 from carp_spec.requests import about_stops, further_stops, require_tick, sound_solution
 from carp_spec.rule import DESIGN
 from carp_spec.shapes import require_shape
-from carproof.engines import compile_what_is_kept, engine_named
+from carproof.engines import compile_what_is_kept, engine_named, fleet_of
 from carproof.execution.delays import until
 from carproof.input_rules import Code
 from carproof.judging.audit import Audit, audit_changes, in_order
@@ -182,7 +182,7 @@ class Fleet:
                 _require_time(robot, now, f"$.robots[{place}]")
         self._planner = planner
         empty = replace(instance, robots=())
-        core = _compiled(replace(instance, robots=tuple(robots.values())), [by_robot[id] for id in sound.order])
+        core = fleet_of(replace(instance, robots=tuple(robots.values())), [by_robot[id] for id in sound.order])
         self._core: PlannedFleet | None = core
         numbers = {id: number for number, id in enumerate(robots)}
         plans = {id: PlanColumns.of(plan) for id, plan in by_robot.items()}
@@ -258,7 +258,7 @@ class Fleet:
     def forget(self) -> None:
         """Forget what is done by the tick `now`: robots start in the visits under way, as of when they entered them."""
         instance, solution = self._known.left()
-        core = _compiled(instance, [*in_order(solution)])
+        core = fleet_of(instance, [*in_order(solution)])
         plans = {plan.robot: PlanColumns.of(plan) for plan in solution.plans}
         places, ids = core.places
         self._known = replace(self._known, robots={**instance.robot}, plans=plans, places=places, ids=ids)
@@ -363,7 +363,7 @@ class Fleet:
 
     def _made(self) -> "PlannedFleet":
         if self._core is None:
-            self._core = _compiled(self.instance, [self._known.plans[id].plan for id in self._known.order])
+            self._core = fleet_of(self.instance, [self._known.plans[id].plan for id in self._known.order])
         return self._core
 
     def _take_over(
@@ -419,13 +419,3 @@ def _require_time(robot: Robot, now: int, path: str) -> None:
     if robot.release < now:
         message = f"the release must be at least {now}, the tick at which it is added, and is {robot.release}"
         raise Refusal("request", f"{path}.release", NOT_BACK.id, message)
-
-
-def _compiled(instance: Instance, plans: Sequence[Plan]) -> "PlannedFleet":
-    """The compiled fleet with these plans, in planning order."""
-    compile_what_is_kept()
-    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - numba is slow to load
-
-    core = PlannedFleet(instance)
-    core.commit(plans)
-    return core

@@ -74,7 +74,10 @@ def main(arguments: Sequence[str] | None = None, began: float | None = None) -> 
 
 def _run(arguments: Sequence[str], began: float) -> int:
     try:
-        answer = _answer(arguments, began) if COMPLETION not in os.environ else _complete()
+        if COMPLETION in os.environ:
+            answer: int = shell_complete(carproof, {}, "carproof", COMPLETION, os.environ[COMPLETION])
+        else:
+            answer = _answer(arguments, began)
         sys.stdout.flush()
     except BrokenPipeError:
         _forget_output()
@@ -92,11 +95,6 @@ def _run(arguments: Sequence[str], began: float) -> int:
         text = f"{traceback.format_exc()}carproof failed by a fault of its own; the lines above say where."
         return _tell(text, INTERNAL_ERROR)
     return answer
-
-
-def _complete() -> int:
-    """Print what a shell can complete a command line to."""
-    return shell_complete(carproof, {}, "carproof", COMPLETION, os.environ[COMPLETION])
 
 
 def _answer(arguments: Sequence[str], began: float) -> int:

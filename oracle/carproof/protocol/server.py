@@ -25,7 +25,8 @@ def serve(requests: BinaryIO, responses: BinaryIO, engine: Engine) -> None:
             response, running = respond(line, session)
         else:
             _skip_line(requests)
-            response = Response(NULL, error=refused(_too_long()))
+            message = f"the line must have at most {LONGEST_LINE} bytes"
+            response = Response(NULL, error=refused(Refusal("limit", "$", SHORT_LINE.id, message)))
         responses.write(write(response))
         responses.flush()
 
@@ -47,11 +48,6 @@ def respond(line: bytes, session: Session) -> tuple[Response, bool]:
         traceback.print_exc(file=sys.stderr)
         message = f"carproof failed by a fault of its own: {type(fault).__name__}: {fault}"
         return Response(id, error=ErrorDocument("internal", "$", None, message)), True
-
-
-def _too_long() -> Refusal:
-    message = f"the line must have at most {LONGEST_LINE} bytes"
-    return Refusal("limit", "$", SHORT_LINE.id, message)
 
 
 def _skip_line(requests: BinaryIO) -> None:

@@ -2,10 +2,9 @@
 
 import click
 
-from carp_spec import Verdict, total_cost
 from carp_spec.documents.solutions import read_trace
 from carp_spec.documents.verdicts import write_verdict
-from carp_spec.execution.execution_rules import trace_violations
+from carproof.api.judging import check_trace
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document, read_file, read_sound
 from carproof.command_line.options import examples, instance_argument, json_option, solution_argument, trace_argument
@@ -29,12 +28,11 @@ def command(*, instance: str, solution: str, trace: str, as_json: bool) -> Answe
     """
     problem, sound = read_sound(instance, solution)
     done = read_file(trace, read_trace)
-    violations = trace_violations(problem, sound, done)
-    verdict = Verdict(total_cost(problem, sound.plans), len(sound.unplanned), violations)
+    verdict = check_trace(problem, sound, done)
     if as_json:
         print_document(write_verdict(verdict))
         return Answer.of(verdict.valid)
-    for violation in violations:
+    for violation in verdict.violations:
         print_line(str(violation))
     if verdict.valid:
         lengths = {plan.robot: len(plan.visits) for plan in sound.plans}

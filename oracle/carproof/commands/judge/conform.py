@@ -4,7 +4,6 @@ import os
 import shlex
 import shutil
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from secrets import randbits
 from typing import TYPE_CHECKING
@@ -28,6 +27,9 @@ from carproof.conform.levels import (
     WHOLE_LEVELS,
     Level,
 )
+from carproof.conform.programs.child import Limits
+from carproof.conform.programs.one_shot import INSTANCE, MAP, SCEN, OneShot, names
+from carproof.conform.programs.program import Program
 from carproof.engines import warm
 from carproof.extras import require
 from carproof.formats import ADAPTERS
@@ -35,8 +37,6 @@ from carproof.progress import progress
 from carproof.protocol.ops.published import op_list
 
 if TYPE_CHECKING:
-    from carproof.conform.programs.child import Limits
-    from carproof.conform.programs.one_shot import OneShot
     from carproof.conform.reporting.saving import Origin
     from carproof.conform.run import Report
 
@@ -175,10 +175,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     Exit codes: 0 it conforms, 1 it does not, 2 bad usage, 3 undecided: no random case decided it. If interrupted, the
     command prints its findings so far.
     """
-    from carproof.conform.programs.child import Limits  # noqa: PLC0415 - what runs processes is loaded when it is needed
-    from carproof.conform.programs.one_shot import OneShot  # noqa: PLC0415
-    from carproof.conform.programs.program import Program  # noqa: PLC0415
-    from carproof.conform.reporting.documents import junit_document, report_document  # noqa: PLC0415
+    from carproof.conform.reporting.documents import junit_document, report_document  # noqa: PLC0415 - it draws
     from carproof.conform.reporting.saved import own_folder, read_saved  # noqa: PLC0415
     from carproof.conform.run import Options, conform  # noqa: PLC0415
 
@@ -195,15 +192,23 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     _require_level(LEVELS[level], one_shot, classical, executor, kernel)
     if (groups or stops) and classical:
         raise click.UsageError("--groups and --stops concern instances of carproof, and the program plans maps.")
-    claims = Claims(frozenset(without), solvable, groups, stops)
     options = Options(
-        LEVELS[level], number, seed, timeout, shrinking, one_shot, classical, claims, executor=executor, large=large
+        LEVELS[level],
+        number,
+        seed,
+        timeout,
+        shrinking,
+        whole=one_shot,
+        classical=classical,
+        claims=Claims(frozenset(without), solvable, groups, stops),
+        kernel=version() if kernel else None,
+        executor=executor,
+        large=large,
     )
-    if kernel:
-        options = replace(options, kernel=version())
     warm()
     origin = _origin(program, level, one_shot, executor, seed)
-    folder = own_folder(save, _program_name(program), origin.judged)
+    scripts = (word for word in program[1:] if os.path.isfile(word))  # noqa: PTH113 - a long text is none
+    folder = own_folder(save, Path(next(scripts, program[0])).name, origin.judged)
     before = read_saved(folder, one_shot)
     if before.stale is not None:
         remark(printable(before.stale))
@@ -223,16 +228,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     return Answer.UNDECIDED if report.conforms is None else Answer.of(report.conforms)
 
 
-def _program_name(program: Sequence[str]) -> str:
-    """The name of the program: of the script where an interpreter runs one."""
-    scripts = (word for word in program[1:] if os.path.isfile(word))  # noqa: PTH113 - a long text is none
-    return Path(next(scripts, program[0])).name
-
-
 def _require_level(level: Level, one_shot: bool, classical: bool, executor: bool, kernel: bool) -> None:
     """Refuse a level at which such a program is not judged."""
-    judged: Sequence[Level] = tuple(Level)
-    what = "a program"
+    judged, what = tuple(Level), "a program"
     if classical:
         judged, what = CLASSICAL_LEVELS, "a planner for MovingAI files"
     elif one_shot:
@@ -245,10 +243,8 @@ def _require_level(level: Level, one_shot: bool, classical: bool, executor: bool
         raise click.UsageError(f"With --kernel --level must be at most {Level.CONTEXT_OPTIMAL.label}.")
 
 
-def _one_shot(program: tuple[str, ...], limits: "Limits", format: str | None) -> "OneShot":
+def _one_shot(program: tuple[str, ...], limits: Limits, format: str | None) -> OneShot:
     from tempfile import gettempdir  # noqa: PLC0415 - loaded only where used
-
-    from carproof.conform.programs.one_shot import INSTANCE, MAP, SCEN, OneShot, names  # noqa: PLC0415
 
     try:
         gettempdir()

@@ -19,9 +19,8 @@ from carproof.command_line.options import (
     planner_options,
 )
 from carproof.command_line.output import show_found, show_solution
-from carproof.command_line.planning import plan_showing
 from carproof.command_line.time_left import time_left, time_of_compiling
-from carproof.engines import engine_named, fastest_with, repaired, repairs_by_default
+from carproof.engines import engine_named, fastest_with, plan_showing, repaired, repairs_by_default
 from carproof.planner_options import planner_named
 from carproof.progress import found_so_far, search_progress
 

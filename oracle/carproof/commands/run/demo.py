@@ -1,6 +1,6 @@
 """`carproof demo`: make, plan and check, on the paper's map and on a MovingAI one."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 from time import perf_counter
@@ -13,22 +13,13 @@ from carp_spec.documents.solutions import write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import OutputFile, write_whole
 from carproof.command_line.options import examples
-from carproof.command_line.planning import plan_showing
 from carproof.command_line.tables import print_line, print_table
-from carproof.engines import sum_of_shortest_paths
+from carproof.engines import plan_showing, sum_of_shortest_paths
 from carproof.formats.movingai import movingai_instance, read_map, read_scenario
 from carproof.generate import Fleet, Grid, grid_instance
 
 COLUMNS = ("instance", "planner", "robots", "unplanned", "total\ncost", "shortest\npaths", "rules\nbroken", "time")
 PLANNERS: dict[str, Planner] = {"carp": Carp(), "neighbourhood m=4": Neighbourhood(m=4)}
-
-
-@dataclass(frozen=True, slots=True)
-class Result:
-    """One row of the table."""
-
-    cells: tuple[object, ...]
-    right: bool
 
 
 @click.command(
@@ -51,16 +42,16 @@ def command(folder: Path) -> Answer:
     instances = {"paper": grid_instance(Grid(), Fleet()), "depot": depot(folder)}
     for planner in PLANNERS.values():  # compile what is not compiled yet, before any time is measured
         plan_showing("", None, instances["depot"], planner)
-    results: list[Result] = []
+    results: list[tuple[Sequence[object], bool]] = []
     for name, instance in instances.items():
         write_whole(_file(folder / f"{name}.json"), write_instance(instance))
         results += [planned(folder, name, instance, planner) for planner in PLANNERS]
-    print_table(COLUMNS, [result.cells for result in results], numbers=COLUMNS[2:])
+    print_table(COLUMNS, [row for row, _ in results], numbers=COLUMNS[2:])
     click.echo()
     print_line(f"The instances and their plans are in {folder}. To look further:")
     print_line(f"  carproof check {folder}/paper.json {folder}/paper-carp.json")
     print_line(f"  carproof plan {folder}/depot.json --planner shuffled --attempts 100")
-    return Answer.of(all(result.right for result in results))
+    return Answer.of(all(is_right for _, is_right in results))
 
 
 def depot(folder: Path) -> Instance:
@@ -72,8 +63,8 @@ def depot(folder: Path) -> Instance:
     return movingai_instance(grid, read_scenario(scenario, grid, None), "park")
 
 
-def planned(folder: Path, name: str, instance: Instance, planner: str) -> Result:
-    """Plan an instance, check the plans and write them."""
+def planned(folder: Path, name: str, instance: Instance, planner: str) -> tuple[Sequence[object], bool]:
+    """Plan an instance, check the plans and write them; a row of the table, and whether no rule is broken."""
     started = perf_counter()
     solution, fleet = plan_showing(f"{name}, {planner}", None, instance, PLANNERS[planner])
     seconds = perf_counter() - started
@@ -81,7 +72,7 @@ def planned(folder: Path, name: str, instance: Instance, planner: str) -> Result
     verdict = judge(instance, solution)
     counts = (len(instance.robots), verdict.unplanned, total_cost(instance, solution.plans))
     shortest = sum_of_shortest_paths(instance, (plan.robot for plan in solution.plans), fleet)
-    return Result((name, planner, *counts, shortest, len(verdict.violations), f"{seconds:.2f} s"), verdict.valid)
+    return (name, planner, *counts, shortest, len(verdict.violations), f"{seconds:.2f} s"), verdict.valid
 
 
 def _file(path: Path) -> Path:

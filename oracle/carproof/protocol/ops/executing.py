@@ -6,16 +6,17 @@ from typing import TypeAlias
 import msgspec
 
 from carp_reference.execution import order_of
-from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Verdict, Visit, total_cost
+from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Visit
 from carp_spec.documents.grants import GrantDocument
 from carp_spec.documents.solutions import SolutionDocument, TraceDocument, solution_document, trace_document
 from carp_spec.documents.verdicts import VerdictDocument, verdict_document
-from carp_spec.execution.execution_rules import require_followed, trace_violations
+from carp_spec.execution.execution_rules import require_followed
 from carp_spec.execution.traces import Trace
 from carp_spec.requests import require_robot, require_tick
 from carp_verify.release.rules import Grant
 from carproof.api.executing import check_grants as grants_checked
 from carproof.api.executing import release as released
+from carproof.api.judging import check_trace as trace_checked
 from carproof.engines import Engine
 from carproof.execution.delays import Delay, late_robots, may_enter, until
 from carproof.execution.giving_way import give_way as given_way
@@ -36,10 +37,7 @@ DelayFields: TypeAlias = tuple[RobotId, int, int]
 
 def check_trace(instance: Instance, solution: Solution, trace: Trace) -> VerdictDocument:
     """Judge whether a trace follows a solution: paths, durations, and the planned order."""
-    sound = sound_within(instance, solution)
-    violations = trace_violations(instance, sound, trace)
-    cost = total_cost(instance, sound.plans)
-    return verdict_document(Verdict(cost, len(sound.unplanned), violations))
+    return verdict_document(trace_checked(instance, sound_within(instance, solution), trace))
 
 
 def dependencies(instance: Instance, solution: Solution, delays: tuple[DelayFields, ...] = ()) -> DependenciesDocument:

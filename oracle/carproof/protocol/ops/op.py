@@ -6,7 +6,7 @@ Each parameter of the handler is a field of the request, or several if it holds 
 
 import dataclasses
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, asdict, dataclass
 from functools import cache
 from inspect import signature
@@ -15,7 +15,7 @@ from typing import Any, Literal, Union, get_args, get_type_hints
 
 import msgspec
 
-from carp_spec import Instance, Neighbourhood, Planner, Refusal, Robot, Solution
+from carp_spec import Instance, Neighbourhood, Planner, Robot, Solution
 from carp_spec.documents.bounds import BoundDocument, read_bound
 from carp_spec.documents.instances import (
     InstanceDocument,
@@ -39,7 +39,7 @@ from carp_spec.inputs.options import require_polish_options
 from carproof.api.fleet import Fleet
 from carproof.engines import Engine
 from carproof.planner_options import PLANNERS, planner_named
-from carproof.protocol.lines import RIGHT_FIELDS, Request, value_of
+from carproof.protocol.lines import Request, value_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,11 +53,7 @@ class Form:
 
 DOCUMENTS: Mapping[Any, Form] = {
     Instance: Form(InstanceDocument, read_instance, instance_document),
-    Robot: Form(
-        RobotDocument,
-        lambda data: robot_of(value_of(RobotDocument)(data)),
-        robot_document,
-    ),
+    Robot: Form(RobotDocument, lambda data: robot_of(value_of(RobotDocument)(data)), robot_document),
     Solution: Form(SolutionDocument, read_solution, solution_document),
     BoundDocument: Form(BoundDocument, read_bound),
     Trace: Form(TraceDocument, read_trace, trace_document),
@@ -86,10 +82,8 @@ def _planner(request: Request) -> Planner | None:
 
 
 def _polish_options(request: Request) -> PolishOptions:
-    given = request.options()
-    for name in given.keys() - {field.name for field in dataclasses.fields(PolishOptions)}:
-        raise Refusal("request", f"$.{name}", RIGHT_FIELDS.id, "the op has no such field")
-    options = PolishOptions(**given)
+    names = [each.name for each in dataclasses.fields(PolishOptions) if each.name in request]
+    options = PolishOptions(**{name: request.take(name, msgspec.json.decode) for name in names})
     require_polish_options(options.iterations, options.seconds, options.seed)
     return options
 
@@ -194,15 +188,12 @@ class Op:
             kinds = OPTIONS[part.type].kinds
             if len(kinds) > 1:
                 yield Field("planner", Literal[tuple(PLANNERS)], Neighbourhood.name)
-            options = (Field(each.name, hints[each.name], each.default) for each, hints in _fields_of(kinds))
-            yield from {each.name: each for each in options}.values()
+            yield from {each.name: each for kind in kinds for each in _fields_of(kind)}.values()
 
 
-def _fields_of(kinds: Iterable[type[Any]]) -> Iterator[tuple[dataclasses.Field[Any], Mapping[str, Any]]]:
-    """The fields of dataclasses, each with the types of its class."""
-    for kind in kinds:
-        hints = get_type_hints(kind)
-        yield from ((field, hints) for field in dataclasses.fields(kind))
+def _fields_of(kind: type[Any]) -> list[Field]:
+    hints = get_type_hints(kind)
+    return [Field(each.name, hints[each.name], each.default) for each in dataclasses.fields(kind)]
 
 
 def op_of(handle: Callable[..., Any]) -> Op:
