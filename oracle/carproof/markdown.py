@@ -10,16 +10,12 @@ def markdown_table(columns: Sequence[str], rows: Iterable[Sequence[object]], num
     return "".join(f"| {' | '.join(map(str, line))} |\n" for line in lines)
 
 
-def with_section(page: str, name: str, text: str) -> str:
-    """The page with the text as its section of that name; raises `ValueError` if it has no such section."""
+def write_section(file: Path, name: str, text: str) -> None:
+    """Write the text into a page, as its section of that name; raises `ValueError` if it has no such section."""
+    page = file.read_text(encoding="utf-8")
     begin, end = (f"<!-- {name}: {mark} -->\n" for mark in ("begin", "end"))
     before, has_begin, rest = page.partition(begin)
     _, has_end, after = rest.partition(end)
     if not (has_begin and has_end):
         raise ValueError(f"the page must have a section between {begin.strip()} and {end.strip()}")
-    return f"{before}{begin}{text}{end}{after}"
-
-
-def write_section(file: Path, name: str, text: str) -> None:
-    """Write the text into a page, as its section of that name."""
-    file.write_text(with_section(file.read_text(encoding="utf-8"), name, text), encoding="utf-8")
+    file.write_text(f"{before}{begin}{text}{end}{after}", encoding="utf-8")

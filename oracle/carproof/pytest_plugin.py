@@ -10,7 +10,7 @@ import re
 import shlex
 from collections.abc import Callable, Collection
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -18,9 +18,9 @@ from carproof.conform.levels import EXAMPLES, LARGE_SECONDS
 
 if TYPE_CHECKING:
     from carp_spec import Instance, Solution
+    from carproof.conform.python import LevelName
     from carproof.conform.run import Report
 
-LevelName = Literal["sound", "complete-in-context", "context-optimal", "complete", "optimal"]
 FOLDER = "conform-failure"
 
 
@@ -34,7 +34,7 @@ class Conformance:
     def conforms(  # noqa: PLR0913 - the options of the command
         self,
         planner: "Callable[[Instance], Solution] | Callable[[dict[str, Any]], dict[str, Any]]",
-        level: LevelName = "sound",
+        level: "LevelName" = "sound",
         examples: int = EXAMPLES,
         seed: int = 0,
         documents: bool = False,

@@ -13,7 +13,7 @@ from carproof.command_line.files import InputFile, Output, print_document, read_
 from carproof.command_line.options import gathered, options_given, read_by
 from carproof.command_line.output import show_instance
 from carproof.command_line.tables import remark
-from carproof.layouts import Imported, Settings, import_layout
+from carproof.layouts import Settings, import_layout
 from carproof.layouts.settings import footprint, millimetres, seconds, speed
 
 MOST_LINES = 8
@@ -68,7 +68,9 @@ def show_layout(
     imported = import_layout(read_bytes(name, layouts=True), shown(name), format, settings)
     if output.as_json and output.file is not None:
         write_whole(output.file, write_instance(imported.instance))
-        print_document(json.dumps(_document(imported), ensure_ascii=False).encode() + b"\n")
+        notes = [{"feature": each.feature, "lines": [*each.lines]} for each in imported.notes]
+        document = {"format": imported.format, "not_expressed": notes}
+        print_document(json.dumps(document, ensure_ascii=False).encode() + b"\n")
     else:
         show_instance(imported.instance, output)
         for each in imported.notes:
@@ -76,8 +78,3 @@ def show_layout(
             where = f"line {lines}" if len(each.lines) == 1 else f"{len(each.lines)} times, lines {lines}"
             remark(f"{shown(name)}: not expressed: {each.feature} ({where})")
     return Answer.YES
-
-
-def _document(imported: Imported) -> dict[str, object]:
-    notes = [{"feature": each.feature, "lines": list(each.lines)} for each in imported.notes]
-    return {"format": imported.format, "not_expressed": notes}

@@ -26,7 +26,7 @@ class LazyGroup(click.Group):
         self,
         *arguments: Any,  # noqa: ANN401 - those of click
         sections: Mapping[str, Mapping[str, str]],
-        added: str | None = None,
+        added: str = "",
         renamed: Mapping[str, Sequence[str]] = {},
         **options: Any,  # noqa: ANN401 - those of click
     ) -> None:
@@ -39,15 +39,15 @@ class LazyGroup(click.Group):
     def list_commands(self, ctx: click.Context) -> list[str]:
         """The commands in the order in which they are listed."""
         del ctx
-        return [*self.modules, *(() if self.added is None else _added(self.added).names)]
+        return [*self.modules, *sorted(self._entry_points().names)]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Load a command."""
         del ctx
         if cmd_name in self.modules:
             command = import_module(self.modules[cmd_name]).command
-        elif self.added is not None and cmd_name in _added(self.added).names:
-            command = _added(self.added)[cmd_name].load()
+        elif cmd_name in (points := self._entry_points()).names:
+            command = points[cmd_name].load()
         else:
             return None
         assert isinstance(command, click.Command)  # noqa: S101 - a promise of ours, not of the user's
@@ -70,20 +70,17 @@ class LazyGroup(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """List the commands heading by heading, each with its whole summary."""
-        *_, last = self.sections
-        for heading, names in self.sections.items():
-            with_added = heading == last and self.added is not None
-            shown = (*names, *_added(self.added).names) if with_added and self.added is not None else names
+        sections = {heading: [*names] for heading, names in self.sections.items()}
+        *_, last = sections.values()
+        last += sorted(self._entry_points().names)
+        for heading, names in sections.items():
+            commands = {name: self.get_command(ctx, name) for name in names}
             with formatter.section(heading):
-                formatter.write_dl([(name, self._summary(ctx, name)) for name in shown])
+                formatter.write_dl(
+                    [(name, each.get_short_help_str(limit=WIDEST_SUMMARY)) for name, each in commands.items() if each]
+                )
 
-    def _summary(self, ctx: click.Context, name: str) -> str:
-        command = self.get_command(ctx, name)
-        assert command is not None  # noqa: S101 - a listed command exists
-        return command.get_short_help_str(limit=WIDEST_SUMMARY)
+    def _entry_points(self) -> "EntryPoints":
+        from importlib.metadata import entry_points  # noqa: PLC0415 - slow to load, and most commands are ours
 
-
-def _added(group: str) -> "EntryPoints":
-    from importlib.metadata import entry_points  # noqa: PLC0415 - slow to load, and most commands are ours
-
-    return entry_points(group=group)
+        return entry_points(group=self.added)

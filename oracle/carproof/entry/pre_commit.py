@@ -16,12 +16,11 @@ SUFFIX = ".solution.json"
 @click.argument("solutions", nargs=-1, metavar=f"NAME{SUFFIX} ...")
 def main(instance: str | None, solutions: Sequence[str]) -> None:
     """Check each solution, and end with the highest exit code of carproof check."""
-    sys.exit(max((_check(instance or instance_of(each), each) for each in solutions), default=0))
-
-
-def _check(instance: str, solution: str) -> int:
-    click.echo(f"{solution}:")
-    return cli.main(["check", instance, solution])
+    codes = [0]
+    for each in solutions:
+        click.echo(f"{each}:")
+        codes.append(cli.main(["check", instance or instance_of(each), each]))
+    sys.exit(max(codes))
 
 
 def instance_of(solution: str) -> str:

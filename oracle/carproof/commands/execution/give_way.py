@@ -33,7 +33,7 @@ def command(*, asked: Asked, route: str | None, engine: str | None, output: Outp
     first, or there is no plan and nothing is written, 2 bad input.
     """
     problem, sound, id = asked.read()
-    visits = None if route is None else read_route(route)
+    visits = None if route is None else _read_route(route)
     found = give_way(problem, sound, id, asked.now, engine_named(engine), visits)
     for each in found.stuck:
         remark(f"Robot {each} finds no plan around the earliest one of robot {id}.")
@@ -48,8 +48,7 @@ def command(*, asked: Asked, route: str | None, engine: str | None, output: Outp
     return Answer.of(found.is_first)
 
 
-def read_route(name: str) -> tuple[Visit, ...]:
-    """The visits of a route."""
+def _read_route(name: str) -> tuple[Visit, ...]:
     with naming(name):
         try:
             visits = msgspec.json.decode(read_bytes(name), type=tuple[tuple[ResourceId, int, int | None], ...])

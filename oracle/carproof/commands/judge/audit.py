@@ -14,7 +14,7 @@ from carproof.command_line.output import shown_plan
 from carproof.command_line.tables import print_line, print_table
 from carproof.command_line.time_left import time_left
 from carproof.engines import engine_named
-from carproof.judging.audit import Audit, ask_kernel, audit_in_order, audit_in_some_order
+from carproof.judging.audit import ask_kernel, audit_in_order, audit_in_some_order
 from carproof.judging.documents import arrival_of, audit_document
 from carproof.progress import progress
 from carproof.requests import deadline
@@ -80,14 +80,9 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         time = f"{perf_counter() - started:.2f} s"
         counted = (instance.robots, audit.certified, audit.late, audit.undecided, sound.unplanned)
         print_table(COLUMNS, [[*(len(each) for each in counted), audit.by, time]], numbers=COLUMNS[:5])
-        print_late(audit)
+        for late in audit.late:
+            earlier = f"{arrival_of(late.earlier)}: {shown_plan(late.earlier)}"
+            print_line(f"robot {late.plan.robot} arrives at {arrival_of(late.plan)}, and can at {earlier}")
         if look is audit_in_some_order and audit.late:
             print_line("in no order are all plans optimal: these are late beside the plans that are certified")
     return Answer.UNDECIDED if audit.undecided and not audit.late else Answer.of(audit.holds)
-
-
-def print_late(audit: Audit) -> None:
-    """Print each late plan on a line, with one that arrives earlier."""
-    for late in audit.late:
-        earlier = f"{arrival_of(late.earlier)}: {shown_plan(late.earlier)}"
-        print_line(f"robot {late.plan.robot} arrives at {arrival_of(late.plan)}, and can at {earlier}")

@@ -23,7 +23,12 @@ def command(id: str | None) -> Answer:
     if id is None:
         print_table(["rule", "statement"], [(rule.id, rule.statement) for rule in ALL_RULES])
     else:
-        print_rule(rule_named(id))
+        rule = rule_named(id)
+        click.echo(f"{rule.id}\n")
+        click.echo(click.wrap_text(rule.statement, initial_indent="  ", subsequent_indent="  "))
+        click.echo(f"\nSource:    {rule.source}")
+        if isinstance(rule, Rule):  # the others have no predicate
+            click.echo(f"Predicate: {rule.predicate.__module__}.{rule.predicate.__name__}")
     return Answer.YES
 
 
@@ -35,12 +40,3 @@ def rule_named(id: str) -> Rule[..., Any] | Code:
         hint = f"the nearest are {', '.join(near)}" if near else "carproof rules lists them all"
         raise click.BadParameter(f"there is no rule {id!r}; {hint}.", param_hint="ID")
     return rules[id]
-
-
-def print_rule(rule: Rule[..., Any] | Code) -> None:
-    """Print a rule in full; a code has no predicate."""
-    click.echo(f"{rule.id}\n")
-    click.echo(click.wrap_text(rule.statement, initial_indent="  ", subsequent_indent="  "))
-    click.echo(f"\nSource:    {rule.source}")
-    if isinstance(rule, Rule):
-        click.echo(f"Predicate: {rule.predicate.__module__}.{rule.predicate.__name__}")

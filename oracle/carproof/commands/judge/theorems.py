@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from carp_verify.theorems import Theorem
 
 COLUMNS = ("lemma", "rules", "formulas", "mutants refuted", "result")
+RESULTS = {True: "checked", False: "FAILED"}
 PROVED = ("theorem, proved in Coq", "file", "rules")
 
 
@@ -69,7 +70,11 @@ def command(name: str | None, as_json: bool) -> Answer:
     else:
         print_table(PROVED, [(each.name, each.file, ", ".join(each.rules)) for each in theorems])
         print_line("")
-        print_table(COLUMNS, [row(module, report) for module, report in reports.items()], numbers=COLUMNS[2:4])
+        rows = [
+            (name, ", ".join(each.lemma.rules), len(each.formulas), len(each.refuted), RESULTS[each.checked])
+            for name, each in reports.items()
+        ]
+        print_table(COLUMNS, rows, numbers=COLUMNS[2:4])
         for report in reports.values():
             print_failures(report)
         count = sum(report.checked for report in reports.values())
@@ -85,12 +90,6 @@ def known(name: str, names: Sequence[str]) -> str:
         hint = f"the nearest are {', '.join(near)}" if near else "carproof theorems lists them all"
         raise click.BadParameter(f"there is no lemma or theorem {name!r}; {hint}.", param_hint="NAME")
     return asked
-
-
-def row(module: str, report: "LemmaReport") -> Sequence[object]:
-    """A row of the columns."""
-    result = "checked" if report.checked else "FAILED"
-    return (module, ", ".join(report.lemma.rules), len(report.formulas), len(report.refuted), result)
 
 
 def print_theorem(theorem: "Theorem") -> None:

@@ -72,18 +72,11 @@ def command(*, instance: str, limit: int, processes: int, proof: Path | None, ou
         if best.obstacle is not None:
             print_line(f"the robots cannot all be planned: {describe(problem, best.obstacle)}")
         if not best.decided:
-            print_line(_undecided(best, limit))
+            found = "; no plans of all robots found yet" if best.cost is None else f", and the best found {best.cost}"
+            print_line(f"undecided after {limit} s: plans of all robots cost at least {best.lower}{found}")
     if not best.decided or (proof is not None and not is_proved):
         return Answer.UNDECIDED
     return Answer.of(best.cost is not None)
-
-
-def _undecided(best: "Optimum", limit: int) -> str:
-    """The known facts about the optimum, on one line."""
-    known = f"undecided after {limit} s: plans of all robots cost at least {best.lower}"
-    if best.cost is None:
-        return f"{known}; no plans of all robots found yet"
-    return f"{known}, and the best found {best.cost}"
 
 
 def _prove(folder: Path, instance: Instance, best: "Optimum", limit: int) -> bool:

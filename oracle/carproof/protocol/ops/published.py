@@ -80,15 +80,12 @@ def _format(kind: Any) -> str | None:  # noqa: ANN401 - a type
     return None if hint is None else str(get_args(hint)[0])
 
 
-def _first_sentence(op: Op) -> str:
-    return op.statement.partition(". ")[0].removesuffix(".")
-
-
 def op_list(names: Iterable[str] = OPS) -> str:
     """The ops with their descriptions, for the end of a command's help."""
     width = max(map(len, OPS)) + 4
     later = " " * width
-    ops = (fill(f"  {name:{width - 2}}{_first_sentence(OPS[name])}", 76, subsequent_indent=later) for name in names)
+    about = {name: OPS[name].statement.partition(". ")[0].removesuffix(".") for name in names}
+    ops = (fill(f"  {name:{width - 2}}{about[name]}", 76, subsequent_indent=later) for name in about)
     return "\n".join(["\b", "Ops:", *ops, "", ""])
 
 
