@@ -8,38 +8,24 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element
 
-LIGHT = {
-    "paper": "#ffffff",
-    "panel": "#f4f5f7",
-    "ink": "#1b1f24",
-    "faint": "#5d6672",
-    "line": "#c9ced6",
-    "cell": "#e3e7ed",
-    "roomy": "#cfd8e6",
-    "wall": "#7d8794",
-    "floor": "#f4f6f8",
-    "joint": "#e9ecf0",
-    "way": "#6b7480",
-    "window": "#dcebdc",
-    "wrong": "#c1121f",
-    "accent": "#0b57d0",
+PALETTE = {
+    "paper": ("#ffffff", "#14171c"),
+    "panel": ("#f4f5f7", "#1d2128"),
+    "ink": ("#1b1f24", "#eceff3"),
+    "faint": ("#5d6672", "#a3adba"),
+    "line": ("#c9ced6", "#3b434f"),
+    "cell": ("#e3e7ed", "#2c323b"),
+    "roomy": ("#cfd8e6", "#3a4657"),
+    "wall": ("#7d8794", "#59636f"),
+    "floor": ("#f4f6f8", "#262b33"),
+    "joint": ("#e9ecf0", "#2e343d"),
+    "way": ("#6b7480", "#98a3b1"),
+    "window": ("#dcebdc", "#223a2c"),
+    "wrong": ("#c1121f", "#ff6b6b"),
+    "accent": ("#0b57d0", "#8ab4f8"),
 }
-DARK = {
-    "paper": "#14171c",
-    "panel": "#1d2128",
-    "ink": "#eceff3",
-    "faint": "#a3adba",
-    "line": "#3b434f",
-    "cell": "#2c323b",
-    "roomy": "#3a4657",
-    "wall": "#59636f",
-    "floor": "#262b33",
-    "joint": "#2e343d",
-    "way": "#98a3b1",
-    "window": "#223a2c",
-    "wrong": "#ff6b6b",
-    "accent": "#8ab4f8",
-}
+"""The colours, each for a light page and for a dark one."""
+LIGHT = {name: light for name, (light, _) in PALETTE.items()}
 HUES = ("#0072b2", "#e69f00", "#009e73", "#f0e442", "#cc79a7", "#56b4e9")
 """Six colours that colour-blind people tell apart (Okabe and Ito 2008); red is left to what is wrong."""
 BLACK, WHITE = "#000000", "#ffffff"
@@ -132,7 +118,7 @@ PAINT: Mapping[str, Mapping[str, str]] = {
 
 def variables() -> str:
     """The palette as a style sheet: the light colours, and the dark ones where a person prefers them."""
-    light, dark = ("".join(f"--{name}:{value};" for name, value in each.items()) for each in (LIGHT, DARK))
+    light, dark = ("".join(f"--{name}:{pair[at]};" for name, pair in PALETTE.items()) for at in (0, 1))
     return f":root{{color-scheme:light dark;{light}}}\n@media (prefers-color-scheme:dark){{:root{{{dark}}}}}\n"
 
 

@@ -6,19 +6,15 @@ from carp_spec import Instance, Refusal, Rule, Solution
 from carp_spec.execution.traces import Trace
 from carp_spec.rule import DESIGN, rule
 
-MOST_RESOURCES = 50_000
-MOST_EDGES = 200_000
-MOST_ROBOTS = 10_000
-MOST_VISITS = 4_000_000
-MOST_BYTES = 128 * 2**20
+_MOST = {"resources": 50_000, "edges": 200_000, "robots": 10_000, "visits": 4_000_000, "bytes": 128 * 2**20}
 LARGEST_TICK = 10_000_000
 MOST_LISTED = 2_000
 
 
 @rule(
     "view/size",
-    f"A picture shows at most {MOST_RESOURCES} resources, {MOST_EDGES} edges, {MOST_ROBOTS} robots and "
-    f"{MOST_VISITS} visits, and is a file of at most {MOST_BYTES} bytes, so that a browser can hold it.",
+    "A picture shows at most {resources} resources, {edges} edges, {robots} robots and {visits} visits, and is a file "
+    "of at most {bytes} bytes, so that a browser can hold it.".format_map(_MOST),
     DESIGN,
 )
 def size_is_bounded(what: str, size: int) -> bool:
@@ -33,13 +29,6 @@ def tick_is_shown(tick: int) -> bool:
 
 
 VIEW_RULES: tuple[Rule[..., Any], ...] = (size_is_bounded, tick_is_shown)
-_MOST = {
-    "resources": MOST_RESOURCES,
-    "edges": MOST_EDGES,
-    "robots": MOST_ROBOTS,
-    "visits": MOST_VISITS,
-    "bytes": MOST_BYTES,
-}
 
 
 def refuse_large_pictures(instance: Instance, solution: Solution, trace: Trace | None = None) -> None:

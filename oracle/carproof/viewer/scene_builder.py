@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from carp_spec import Instance, Plan, ResourceId, Robot, RobotId, Solution, Violation, judge, plan_cost
+from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, Violation, judge, plan_cost
 from carp_spec.execution.execution_rules import trace_violations
 from carp_spec.execution.traces import Trace
 from carp_spec.inputs.values import require_instance, require_solution
@@ -51,7 +51,6 @@ class Stage:
 
     instance: Instance
     solution: Solution
-    trace: Trace | None
     lanes: Lanes
     placed: Placement
     number: Mapping[ResourceId, int]
@@ -63,8 +62,7 @@ class Stage:
         """The part of a resource's square that robots are drawn in."""
         resource = self.instance.graph.resource.get(id)
         has_traits = resource is not None and (resource.capacity, resource.duration) != (1, 1)
-        is_within = self.is_named and not self.lanes
-        return area(is_named=is_within, has_traits=has_traits and id not in self.lanes)
+        return area(is_named=self.is_named and not self.lanes, has_traits=has_traits and id not in self.lanes)
 
     @property
     def is_named(self) -> bool:
@@ -129,7 +127,7 @@ def make_stage(instance: Instance, solution: Solution, trace: Trace | None) -> S
     in_use = [(id, lane) for id in visited for lane in range(max(1, planned.lane_count(id), done.lane_count(id)))]
     stand = {each: at for at, each in enumerate(in_use)}
     lanes = lanes_of(instance)
-    return Stage(instance, solution, trace, lanes, placement(instance.graph, lanes), number, planned, done, stand)
+    return Stage(instance, solution, lanes, placement(instance.graph, lanes), number, planned, done, stand)
 
 
 def laid(plans: tuple[Plan, ...]) -> Laid:
@@ -257,10 +255,11 @@ def tracks(stage: Stage, robots: tuple[tuple[RobotId, int | None], ...], *, is_a
     happened = {plan.robot: at for at, plan in enumerate(stage.done.plans)}
     for at, (id, at_plan) in enumerate(robots):
         robot = stage.instance.robot.get(id)
+        stops = () if robot is None else robot.stops
         plan = None if at_plan is None else stage.solution.plans[at_plan]
         at_done = happened.get(id)
         done = None if at_done is None else stage.done.plans[at_done]
-        known = robot is not None and plan is not None and plan.visits
+        known = None if robot is None or plan is None or not plan.visits else plan
         yield Track(
             label=label(id),
             short=shorts[at],
@@ -268,22 +267,17 @@ def tracks(stage: Stage, robots: tuple[tuple[RobotId, int | None], ...], *, is_a
             start=None if robot is None else stage.number[robot.start],
             goal=None if robot is None else stage.number[robot.goal],
             start_mark=found.get((id, -1)),
-            goal_mark=None if robot is None else found.get((id, len(robot.stops) - 1)),
-            stops=() if robot is None else tuple((stage.number[each.resource], each.service) for each in robot.stops),
-            stop_marks=() if robot is None else tuple(stop_marks(robot, found)),
-            services=tuple(services(stage.instance, plan)) if known and plan is not None else (),
+            goal_mark=found.get((id, len(stops) - 1)),
+            stops=tuple((stage.number[each.resource], each.service) for each in stops),
+            stop_marks=tuple(found[id, number] for number in range(len(stops) - 1) if (id, number) in found),
+            services=() if known is None else tuple(services(stage.instance, known)),
             release=0 if robot is None else robot.release,
             pace="" if robot is None else label(robot.pace),
-            cost=plan_cost(stage.instance, plan) if known and plan is not None else None,
+            cost=None if known is None else plan_cost(stage.instance, known),
             note="" if is_alone else note(robot is not None, plan, plan_count[id], done),
             stays=tuple(stays_of(stage, stage.planned, at_plan)),
             done=tuple(stays_of(stage, stage.done, at_done)),
         )
-
-
-def stop_marks(robot: Robot, found: Mapping[tuple[RobotId, int], Mark]) -> Iterator[Mark]:
-    """The marks of the stops before the goal."""
-    yield from (found[robot.id, number] for number in range(len(robot.stops) - 1) if (robot.id, number) in found)
 
 
 def services(instance: Instance, plan: Plan) -> Iterator[tuple[int, int]]:
