@@ -14,22 +14,13 @@ const ROUND_STEPS = [...Array(9).keys()].flatMap((power) => [1, 2, 5].map((digit
 class Chart {
   constructor(view, size, canvas, pick) {
     Object.assign(this, { view, size, canvas });
+    this.drawSoon = withNextFrame(() => this.draw());
     this.chosen = [];
     this.time = scene.first;
     this.end = scene.last + Math.max(1, (scene.last - scene.first) / 40);
     this.colours = colours();
-    this.stays = scene.places.map(() => []);
-    this.done = scene.places.map(() => []);
-    scene.tracks.forEach((track, number) => {
-      for (const [stand, enter, leave] of track.stays) {
-        const { place, lane } = scene.stands[stand];
-        this.stays[place].push({ number, lane, enter, leave });
-      }
-      for (const [stand, enter, leave] of track.done) {
-        const { place, lane } = scene.stands[stand];
-        this.done[place].push({ number, lane, enter, leave: leave ?? scene.now + 1 });
-      }
-    });
+    this.stays = visitsByPlace((track) => track.stays);
+    this.done = visitsByPlace((track) => track.done, scene.now + 1);
     this.violations = scene.places.map(() => []);
     for (const violation of scene.violations) {
       if (violation.start !== null) for (const place of violation.places) this.violations[place].push(violation);
@@ -38,7 +29,7 @@ class Chart {
     view.addEventListener("scroll", () => this.drawSoon());
     canvas.addEventListener("click", (event) => this.pick(event, pick));
     new ResizeObserver(() => this.resize()).observe(view);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    onColours(() => {
       this.colours = colours();
       this.drawSoon();
     });
@@ -104,13 +95,6 @@ class Chart {
     const { scrollTop, clientHeight } = this.view;
     if (top - AXIS < scrollTop || top + height > scrollTop + clientHeight) this.view.scrollTop = top - clientHeight / 2;
     return true;
-  }
-
-  drawSoon() {
-    this.waiting ??= requestAnimationFrame(() => {
-      this.waiting = undefined;
-      this.draw();
-    });
   }
 
   draw() {

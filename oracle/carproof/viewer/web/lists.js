@@ -2,19 +2,10 @@
 
 class ViolationList {
   constructor(list, jump) {
-    this.buttons = scene.violations.map((violation) => {
-      const button = make("button", "", violation.message);
-      button.type = "button";
-      button.addEventListener("click", () => jump(violation));
-      return button;
-    });
+    this.buttons = scene.violations.map((violation) => entry(violation.message, () => jump(violation)));
     scene.rules.forEach(({ id, statement, count }, rule) => {
-      const group = make("details");
-      group.open = true;
-      const summary = make("summary", "", `${id} `);
-      summary.append(make("span", "count", count));
       const ofRule = this.buttons.filter((_, at) => scene.violations[at].rule === rule);
-      group.append(summary, make("p", "", statement), ...ofRule);
+      const group = groupOf(id, count, make("p", "", statement), ...ofRule);
       if (ofRule.length < count)
         group.append(make("p", "", `and ${count - ofRule.length} more, which carproof check lists`));
       list.append(group);
@@ -31,8 +22,7 @@ class ViolationList {
 class RobotList {
   constructor(list, jump) {
     this.buttons = scene.tracks.map((track, number) => {
-      const button = make("button");
-      button.type = "button";
+      const button = entry("", () => jump(number));
       const name = (place) => (place === null ? "?" : scene.places[place].label);
       const swatch = make("span", "swatch");
       const { fill, edge, width } = scene.looks[track.look];
@@ -43,21 +33,11 @@ class RobotList {
       button.append(make("small", "", ` ${[name(track.start), ...(stops.length ? stops : ["?"])].join(" → ")}`));
       const notes = [track.note, track.cost === null ? "" : `cost ${track.cost}`].filter((each) => each);
       button.append(make("small", "", notes.length ? ` · ${notes.join(" · ")}` : ""));
-      button.addEventListener("click", () => jump(number));
       return button;
     });
     const unplanned = this.buttons.filter((_, number) => !scene.alone && !scene.tracks[number].stays.length);
-    if (unplanned.length) list.append(this.group("without a plan", unplanned));
+    if (unplanned.length) list.append(groupOf("without a plan", unplanned.length, ...unplanned));
     list.append(...this.buttons.filter((button) => !unplanned.includes(button)));
-  }
-
-  group(name, buttons) {
-    const group = make("details");
-    group.open = true;
-    const summary = make("summary", "", `${name} `);
-    summary.append(make("span", "count", buttons.length));
-    group.append(summary, ...buttons);
-    return group;
   }
 
   find(part) {

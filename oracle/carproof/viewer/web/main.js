@@ -194,25 +194,15 @@ addEventListener("keyup", (event) => {
   if (event.key === " " && event.target.matches?.("button, summary")) event.preventDefault();
 });
 
+/** Buttons do what their key does; these have none. */
 const CLICKS = {
-  first: () => clock.stopAt(scene.first),
-  back: () => clock.step(-1),
-  play: () => clock.toggle(),
-  forward: () => clock.step(1),
-  last: () => clock.stopAt(scene.last),
-  slower: () => clock.changeSpeed(-1),
-  faster: () => clock.changeSpeed(1),
-  "map-in": () => map.zoom(1.5),
-  "map-out": () => map.zoom(1 / 1.5),
-  "map-fit": () => map.fit(),
-  goals: () => toggle("goals"),
-  waits: () => toggle("waits"),
-  "map-alone": showMapAlone,
   "chart-in": () => chart.zoom(1.5),
   "chart-out": () => chart.zoom(1 / 1.5),
   help: () => byId("keys").showModal(),
 };
 for (const [id, action] of Object.entries(CLICKS)) byId(id).addEventListener("click", action);
+for (const button of document.querySelectorAll("[data-key]"))
+  button.addEventListener("click", () => KEYS[button.dataset.key]({}));
 
 byId("from").textContent = scene.first;
 byId("to").textContent = scene.last;
@@ -221,7 +211,7 @@ byId("slider").addEventListener("input", (event) => clock.stopAt(Number(event.ta
 byId("rows").addEventListener("change", (event) => chart.showRows(event.target.value));
 byId("find").addEventListener("input", (event) => robots.find(event.target.value));
 new ResizeObserver(drawStrip).observe(byId("strip"));
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", drawStrip);
+onColours(drawStrip);
 
 /** For pages that embed this one, and for its tests. */
 globalThis.viewer = { clock, map, chart, choose };

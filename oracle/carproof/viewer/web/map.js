@@ -73,6 +73,7 @@ class MapView {
     this.svg = view.querySelector("svg");
     [this.back, this.canvas] = view.querySelectorAll("canvas");
     this.dots = new Map();
+    this.drawSoon = withNextFrame(() => this.draw());
     giveRoom([...this.svg.querySelectorAll(".point-name")]);
     this.colours = colours();
     this.shown = { goals: true, waits: false };
@@ -81,7 +82,7 @@ class MapView {
     this.setTime(scene.first);
     new MapPointers(this, choose);
     new ResizeObserver(() => this.resize()).observe(view);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    onColours(() => {
       this.colours = colours();
       this.dots.clear();
       this.hasGoals = false;
@@ -217,13 +218,6 @@ class MapView {
     return found;
   }
 
-  drawSoon() {
-    this.waiting ??= requestAnimationFrame(() => {
-      this.waiting = undefined;
-      this.draw();
-    });
-  }
-
   draw() {
     if (!this.hasGoals) this.drawGoals();
     this.pen = clearedPen(this.canvas, this.size.width, this.size.height);
@@ -275,8 +269,7 @@ class MapView {
   }
 
   diamond(x, y, half) {
-    this.pen.beginPath();
-    for (const [right, down] of [[0, -half], [half, 0], [0, half], [-half, 0]]) this.pen.lineTo(x + right, y + down);
+    trace(this.pen, [[x, y - half], [x + half, y], [x, y + half], [x - half, y]]);
     this.pen.closePath();
     this.pen.stroke();
   }
@@ -289,8 +282,7 @@ class MapView {
 
   drawTrail({ stays }) {
     const points = stays.map(([stand]) => scene.stands[stand].at).filter((at) => at);
-    this.pen.beginPath();
-    for (const [x, y] of points) this.pen.lineTo(this.px(x), this.py(y));
+    trace(this.pen, points.map(([x, y]) => [this.px(x), this.py(y)]));
     Object.assign(this.pen, { strokeStyle: this.colours.ink, lineWidth: 2.5, lineJoin: "round", globalAlpha: 0.7 });
     this.pen.stroke();
     this.pen.globalAlpha = 1;
@@ -316,14 +308,9 @@ class MapView {
       y - distance * Math.sin(angle) + side * Math.cos(angle),
     ];
     Object.assign(pen, { strokeStyle: colour, fillStyle: colour, lineWidth: 2 });
-    pen.beginPath();
-    pen.moveTo(this.px(from.x), this.py(from.y));
-    pen.lineTo(...at(gap + 4, 0));
+    trace(pen, [[this.px(from.x), this.py(from.y)], at(gap + 4, 0)]);
     pen.stroke();
-    pen.beginPath();
-    pen.moveTo(...at(gap, 0));
-    pen.lineTo(...at(gap + 8, 4));
-    pen.lineTo(...at(gap + 8, -4));
+    trace(pen, [at(gap, 0), at(gap + 8, 4), at(gap + 8, -4)]);
     pen.fill();
   }
 
@@ -338,9 +325,7 @@ class MapView {
       Object.assign(pen, { strokeStyle: scene.looks[scene.tracks[number].look].hue, lineWidth: 2 });
       this.ring(this.px(ghost.x), this.py(ghost.y), this.radius(ghost));
       if (!pose) return;
-      pen.beginPath();
-      pen.moveTo(this.px(pose.x), this.py(pose.y));
-      pen.lineTo(this.px(ghost.x), this.py(ghost.y));
+      trace(pen, [pose, ghost].map(({ x, y }) => [this.px(x), this.py(y)]));
       pen.stroke();
     });
     pen.setLineDash([]);
@@ -368,10 +353,7 @@ class MapView {
     const { pen } = this;
     const at = (distance, turn) => [x + distance * Math.cos(angle + turn), y + distance * Math.sin(angle + turn)];
     pen.fillStyle = colour;
-    pen.beginPath();
-    pen.moveTo(...at(1.5 * radius, 0));
-    pen.lineTo(...at(radius, 0.5));
-    pen.lineTo(...at(radius, -0.5));
+    trace(pen, [at(1.5 * radius, 0), at(radius, 0.5), at(radius, -0.5)]);
     pen.fill();
   }
 

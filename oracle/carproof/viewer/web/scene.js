@@ -17,6 +17,24 @@ function make(tag, className, text) {
   return made;
 }
 
+/** An entry of a list that can be clicked. */
+function entry(text, action) {
+  const button = make("button", "", text);
+  button.type = "button";
+  button.addEventListener("click", action);
+  return button;
+}
+
+/** An open group of entries below a name and their number. */
+function groupOf(name, count, ...content) {
+  const group = make("details");
+  group.open = true;
+  const summary = make("summary", "", `${name} `);
+  summary.append(make("span", "count", count));
+  group.append(summary, ...content);
+  return group;
+}
+
 /** Whether the time is in [start, end); an end of null is for ever. */
 function holds(start, end, time) {
   return start <= time && (end === null || time < end);
@@ -43,6 +61,18 @@ function isBrokenAt(violation, time) {
   return holds(start, end === null ? null : Math.max(end, start + 1), Math.floor(time));
 }
 
+/** Each place's visits of a kind: the robot's number, the visit's, its lane and ticks; what is for ever ends as told. */
+function visitsByPlace(visitsOf, end = null) {
+  const found = scene.places.map(() => []);
+  scene.tracks.forEach((track, number) => {
+    visitsOf(track).forEach(([stand, enter, leave], visit) => {
+      const { place, lane } = scene.stands[stand];
+      found[place].push({ number, visit, lane, enter, leave: leave ?? end });
+    });
+  });
+  return found;
+}
+
 function interval(enter, leave) {
   return `[${enter}, ${leave === null ? "for ever" : leave})`;
 }
@@ -56,8 +86,23 @@ function colours() {
   const style = getComputedStyle(document.documentElement);
   const named = (name) => style.getPropertyValue(`--${name}`).trim();
   const plain = ["paper", "panel", "ink", "faint", "line", "window", "wrong", "accent"];
-  const found = Object.fromEntries(plain.map((name) => [name, named(name)]));
-  return found;
+  return Object.fromEntries(plain.map((name) => [name, named(name)]));
+}
+
+/** Do something whenever the page turns dark or light. */
+function onColours(action) {
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", action);
+}
+
+/** What draws with the next frame, once however often it is asked for. */
+function withNextFrame(draw) {
+  let waiting;
+  return () => {
+    waiting ??= requestAnimationFrame(() => {
+      waiting = undefined;
+      draw();
+    });
+  };
 }
 
 /** Make a canvas as large as its box, if it is not, and clear it; sizes are in the page's pixels from then on. */
@@ -68,6 +113,12 @@ function clearedPen(canvas, width, height) {
   pen.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
   pen.clearRect(0, 0, width, height);
   return pen;
+}
+
+/** Begin a path through the points. */
+function trace(pen, points) {
+  pen.beginPath();
+  for (const [x, y] of points) pen.lineTo(x, y);
 }
 
 /** The hatched frame of a violation. */

@@ -1,12 +1,7 @@
 // Who waits for whom, if robots keep the order of the plans: the dependencies between robots that hold at a tick.
 
-/** The visits of each place by the plans: the robot's number, the visit's, and its ticks. */
-const visitsOf = scene.places.map(() => []);
-scene.tracks.forEach(({ stays }, number) => {
-  stays.forEach(([stand, enter, leave], visit) => {
-    visitsOf[scene.stands[stand].place].push({ number, visit, enter, leave: leave ?? Infinity });
-  });
-});
+/** The visits of each place by the plans. */
+const visitsOf = visitsByPlace((track) => track.stays, Infinity);
 
 /** The stays that robots make: what has happened, or without a trace what is planned. */
 function madeBy({ stays, done }) {
