@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from carp_spec import Refusal
+
 
 @dataclass(frozen=True, slots=True)
 class Code:
@@ -10,3 +12,7 @@ class Code:
     id: str
     statement: str
     source: str
+
+    def refuse(self, path: str, message: str) -> Refusal:
+        """The refusal of a document that does not meet it, at a path or a line."""
+        return Refusal("document", path, self.id, message)

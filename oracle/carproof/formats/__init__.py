@@ -104,7 +104,7 @@ def format_of(data: bytes, instance: Instance, file: str = "file") -> str:
         return possible[0]
     looks = ", ".join(name for name, each in ADAPTERS.items() if each.looks_like(text))
     what = f"it could be {looks}" if looks else f"it looks like none of {', '.join(ADAPTERS)}"
-    raise Refusal("document", file, CLEAR_FORMAT.id, f"the format must be named by --from: {what}")
+    raise CLEAR_FORMAT.refuse(file, f"the format must be named by --from: {what}")
 
 
 def named_as(instance: Instance, format: str) -> Instance:

@@ -7,7 +7,7 @@ The array has a row for each y and a column for each x. A cell is free if its en
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from carp_spec import AfterGoal, Instance, Refusal, Robot
+from carp_spec import AfterGoal, Instance, Robot
 from carp_spec.rule import DESIGN
 from carproof.formats.movingai import BLOCKED, PASSABLE, GridMap, movingai_instance
 from carproof.generate.grid import cell_id
@@ -41,15 +41,17 @@ def instance_from_array(
     try:
         cells = np.asarray(free)
     except ValueError as error:
-        raise _refusal("$", f"the rows must be equally long: {error}") from None
+        raise RIGHT_ARRAY.refuse("$", f"the rows must be equally long: {error}") from None
     if cells.ndim != 2 or cells.dtype.kind not in "biu":  # noqa: PLR2004 - a grid has two dimensions
         message = f"it must have two dimensions of booleans or whole numbers, not {cells.ndim} of {cells.dtype}"
-        raise _refusal("$", message)
+        raise RIGHT_ARRAY.refuse("$", message)
     rows = tuple("".join(PASSABLE[0] if cell else BLOCKED[0] for cell in row) for row in cells.tolist())
     grid = GridMap(cells.shape[1], cells.shape[0], rows)
     ends = [_cells(grid, given, name) for given, name in ((starts, "starts"), (goals, "goals"))]
     if len(ends[0]) != len(ends[1]):
-        raise _refusal("$.goals", f"there must be {len(ends[0])} of them, one for each start, and are {len(ends[1])}")
+        raise RIGHT_ARRAY.refuse(
+            "$.goals", f"there must be {len(ends[0])} of them, one for each start, and are {len(ends[1])}"
+        )
     pairs = enumerate(zip(*ends, strict=True), start=1)
     robots = [Robot(f"r{number}", cell_id(*start), cell_id(*goal)) for number, (start, goal) in pairs]
     return movingai_instance(grid, robots, after_goal, "array")
@@ -62,13 +64,9 @@ def _cells(grid: GridMap, given: Iterable[Sequence[int]], name: str) -> list[Cel
     for place, pair in enumerate(given):
         cell = np.asarray(pair)
         if cell.shape != (2,) or cell.dtype.kind not in "iu":
-            raise _refusal(f"$.{name}[{place}]", f"it must be a pair of whole numbers, not {pair!r}")
+            raise RIGHT_ARRAY.refuse(f"$.{name}[{place}]", f"it must be a pair of whole numbers, not {pair!r}")
         x, y = cell.tolist()
         if not grid.is_passable(x, y):
-            raise _refusal(f"$.{name}[{place}]", f"it must be a free cell of the grid, and {x},{y} is not")
+            raise RIGHT_ARRAY.refuse(f"$.{name}[{place}]", f"it must be a free cell of the grid, and {x},{y} is not")
         found.append((x, y))
     return found
-
-
-def _refusal(path: str, message: str) -> Refusal:
-    return Refusal("document", path, RIGHT_ARRAY.id, message)

@@ -8,7 +8,7 @@ tables (CSV) with one row and a column `path` or `solution_plan` are read too. S
 import re
 from itertools import pairwise
 
-from carp_spec import Instance, Refusal, RobotId, Solution
+from carp_spec import Instance, RobotId, Solution
 from carproof.formats.adapter import Adapter, first_line
 from carproof.formats.walks import Cell, Walk, require_bounded, require_walks, solution_of_walks, walks_of_solution
 from carproof.input_rules import Code
@@ -30,21 +30,17 @@ RIGHT_MOVES = Code(
 )
 
 
-def _refuse(file: str, number: int, message: str) -> Refusal:
-    return Refusal("document", f"{file}:{number}", RIGHT_MOVES.id, message)
-
-
 def _lines(text: str, robots: int, file: str) -> list[str]:
     """The moves of each robot."""
     moves, first = _cell_of_table(text, file) if _is_table(text) else (text, 1)
     lines = [line.strip() for line in moves.removesuffix("\n").split("\n")] if moves else []
     for number, line in enumerate(lines, start=first):
         if _RUNS.fullmatch(line) is None:
-            raise _refuse(file, number, "the line must be of the letters l, r, u, d and w and numbers before them")
+            message = "the line must be of the letters l, r, u, d and w and numbers before them"
+            raise RIGHT_MOVES.refuse(f"{file}:{number}", message)
     if len(lines) != robots:
-        raise _refuse(
-            file, first + len(lines) - 1, f"there must be a line for each of {robots} robots, not {len(lines)}"
-        )
+        message = f"there must be a line for each of {robots} robots, not {len(lines)}"
+        raise RIGHT_MOVES.refuse(f"{file}:{first + len(lines) - 1}", message)
     return lines
 
 
@@ -65,7 +61,8 @@ def _cell_of_table(text: str, file: str) -> tuple[str, int]:
     columns = [position for position, name in enumerate(names) if name in _COLUMNS]
     fields = [quoted or plain for quoted, plain in _FIELD.findall(row)] if _ROW.fullmatch(row) else []
     if len(columns) != 1 or len(fields) != len(names):
-        raise _refuse(file, 1, f"the table must have one row, and one of the columns {' and '.join(_COLUMNS)}")
+        message = f"the table must have one row, and one of the columns {' and '.join(_COLUMNS)}"
+        raise RIGHT_MOVES.refuse(f"{file}:1", message)
     return fields[columns[0]], 2
 
 
@@ -112,7 +109,7 @@ def _runs(walk: Walk) -> str:
         step = (next_x - x, next_y - y)
         if step not in _LETTERS:
             message = f"the format cannot hold it: the move from {x},{y} to {next_x},{next_y} is not to a cell beside"
-            raise Refusal("document", "SOLUTION", RIGHT_MOVES.id, message)
+            raise RIGHT_MOVES.refuse("SOLUTION", message)
         for letter, count in (("w", leave - enter - 1), (_LETTERS[step], 1)):
             if count and runs and runs[-1][0] == letter:
                 runs[-1] = (letter, runs[-1][1] + count)

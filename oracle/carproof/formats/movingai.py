@@ -68,34 +68,29 @@ def read_map(data: bytes, file: str = "map") -> GridMap:
     for number, (word, right) in enumerate(_HEADER.items()):
         is_number = len(header[number]) == 2 and _is_number(header[number][1])  # noqa: PLR2004 - a word and its value
         if header[number][:1] != [word] or (word in ("height", "width") and not is_number):
-            raise Refusal("document", f"{file}:{number + 1}", RIGHT_MAP.id, f"the line must be: {right}")
+            raise RIGHT_MAP.refuse(f"{file}:{number + 1}", f"the line must be: {right}")
     grid = GridMap(width=int(header[2][1]), height=int(header[1][1]), rows=tuple(lines[4:]))
     if len(grid.rows) != grid.height:
         message = f"the map must have {grid.height} rows, and has {len(grid.rows)}"
-        raise Refusal("document", f"{file}:{len(lines)}", RIGHT_MAP.id, message)
+        raise RIGHT_MAP.refuse(f"{file}:{len(lines)}", message)
     for number, row in enumerate(grid.rows, start=5):
-        _refuse_wrong_row(row, grid.width, f"{file}:{number}")
+        if len(row) != grid.width:
+            raise RIGHT_MAP.refuse(f"{file}:{number}", f"the row must have {grid.width} cells, and has {len(row)}")
+        for cell in row:
+            if cell not in PASSABLE + BLOCKED:
+                raise RIGHT_MAP.refuse(f"{file}:{number}", f"a cell must be one of {PASSABLE}{BLOCKED}, not {cell!r}")
     return grid
-
-
-def _refuse_wrong_row(row: str, width: int, where: str) -> None:
-    if len(row) != width:
-        raise Refusal("document", where, RIGHT_MAP.id, f"the row must have {width} cells, and has {len(row)}")
-    for cell in row:
-        if cell not in PASSABLE + BLOCKED:
-            message = f"a cell must be one of {PASSABLE}{BLOCKED}, not {cell!r}"
-            raise Refusal("document", where, RIGHT_MAP.id, message)
 
 
 def read_scenario(data: bytes, grid: GridMap, agents: int | None, file: str = "scenario") -> tuple[Robot, ...]:
     """Read the first agents of a scenario, all if no number is given; raises `Refusal` with file and line."""
     lines = _lines(data)
     if not lines or lines[0].split() not in (["version", "1"], ["version", "1.0"]):
-        raise Refusal("document", f"{file}:1", RIGHT_SCENARIO.id, "the line must be: version 1")
+        raise RIGHT_SCENARIO.refuse(f"{file}:1", "the line must be: version 1")
     numbered = [(number, line) for number, line in enumerate(lines[1:], start=2) if line.strip()]
     if agents is not None and agents > len(numbered):
         message = f"{agents} agents are asked for, and the scenario has {len(numbered)}"
-        raise Refusal("document", f"{file}:{len(lines)}", RIGHT_SCENARIO.id, message)
+        raise RIGHT_SCENARIO.refuse(f"{file}:{len(lines)}", message)
     return tuple(
         _agent(position, line, grid, f"{file}:{number}")
         for position, (number, line) in enumerate(numbered[:agents], start=1)
@@ -103,20 +98,18 @@ def read_scenario(data: bytes, grid: GridMap, agents: int | None, file: str = "s
 
 
 def _agent(position: int, line: str, grid: GridMap, where: str) -> Robot:
-    def refuse(message: str) -> Refusal:
-        return Refusal("document", where, RIGHT_SCENARIO.id, message)
-
     fields = line.split("\t") if "\t" in line else line.split()
     if len(fields) != _FIELDS or not all(map(_is_number, fields[2:8])):
-        raise refuse("the line must have nine fields: bucket, map, width, height, start x, y, goal x, y, length")
+        message = "the line must have nine fields: bucket, map, width, height, start x, y, goal x, y, length"
+        raise RIGHT_SCENARIO.refuse(where, message)
     width, height, *ends = map(int, fields[2:8])
     if (width, height) != (grid.width, grid.height):
-        raise refuse(f"the map must be {width} x {height}, and is {grid.width} x {grid.height}")
-    start, goal = (ends[0], ends[1]), (ends[2], ends[3])
-    for name, (x, y) in (("start", start), ("goal", goal)):
+        message = f"the map must be {width} x {height}, and is {grid.width} x {grid.height}"
+        raise RIGHT_SCENARIO.refuse(where, message)
+    for name, (x, y) in (("start", ends[:2]), ("goal", ends[2:])):
         if not grid.is_passable(x, y):
-            raise refuse(f"the {name} must be a passable cell of the map, and {x},{y} is not")
-    return Robot(f"r{position}", cell_id(*start), cell_id(*goal))
+            raise RIGHT_SCENARIO.refuse(where, f"the {name} must be a passable cell of the map, and {x},{y} is not")
+    return Robot(f"r{position}", cell_id(*ends[:2]), cell_id(*ends[2:]))
 
 
 def read_movingai(map: bytes, scenario: bytes, agents: int | None = None, after_goal: AfterGoal = "park") -> Instance:

@@ -50,7 +50,7 @@ class Tree:
 
     def refuse(self, message: str) -> Refusal:
         """The refusal of this value."""
-        return Refusal("document", f"{self.file}:{self.line}", RIGHT_LAYOUT.id, message)
+        return RIGHT_LAYOUT.refuse(f"{self.file}:{self.line}", message)
 
     @property
     def fields(self) -> Mapping[str, "Tree"]:

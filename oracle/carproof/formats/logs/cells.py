@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from carp_spec import Instance, Plan, Refusal, Visit
+from carp_spec import Instance, Plan, Visit
 from carp_spec.documents.decoding import without_collection
 from carp_spec.execution.traces import Trace
 from carp_spec.rule import DESIGN
@@ -34,17 +34,12 @@ CellReader: TypeAlias = Callable[[str, int, str], CellLog]
 """Reads a text; the width of the map turns numbers of cells into x and y. Raises `Refusal` with the file."""
 
 
-def wrong(where: str, message: str) -> Refusal:
-    """The refusal of a malformed log."""
-    return Refusal("document", where, RIGHT_LOG.id, message)
-
-
 @without_collection()
 def trace_of(instance: Instance, log: CellLog) -> Trace:
     """The trace of a log; its k-th robot is the k-th of the instance."""
     if len(log.walks) != len(instance.robots):
         message = f"the log must have a robot for each of {len(instance.robots)}, and has {len(log.walks)}"
-        raise wrong("INSTANCE", message)
+        raise RIGHT_LOG.refuse("INSTANCE", message)
     resources = {(each.x, each.y): each.id for each in instance.graph.resources}
     ticks = range(max(map(len, log.walks), default=1))
     shared = [*ticks]  # one object a tick, however many visits begin at it

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from carproof.formats.logs.cells import CellLog, wrong
+from carproof.formats.logs.cells import RIGHT_LOG, CellLog
 from carproof.formats.walks import MOST_CELLS, Cell, require_bounded
 
 if TYPE_CHECKING:
@@ -40,26 +40,28 @@ def read(text: str, width: int, file: str) -> CellLog:
     try:
         output = msgspec.json.decode(text, type=Output)
     except (msgspec.DecodeError, RecursionError) as error:
-        raise wrong(file, f"it must be an output of the League of Robot Runners: {error}") from error
+        raise RIGHT_LOG.refuse(file, f"it must be an output of the League of Robot Runners: {error}") from error
     if len(output.actualPaths) != len(output.start):
         message = (
             f"there must be a path for each of {len(output.start)} starts, and there are {len(output.actualPaths)}"
         )
-        raise wrong(f"{file}: $.actualPaths", message)
+        raise RIGHT_LOG.refuse(f"{file}: $.actualPaths", message)
     require_bounded(sum(len(path) // 2 + 2 for path in output.actualPaths), file)
     walks = []
     for number, ((row, column, heading), path) in enumerate(zip(output.start, output.actualPaths, strict=True)):
         is_start = heading in HEADINGS and all(0 <= each < MOST_CELLS for each in (row, column))
         if not (is_start and {*path[::2]} <= ACTIONS and {*path[1::2]} <= {","} and (len(path) % 2 or not path)):
             message = "a robot must start in a cell with heading E, S, W or N, and do F, R, C, W or T at each tick"
-            raise wrong(f"{file}: $.actualPaths[{number}]", message)
+            raise RIGHT_LOG.refuse(f"{file}: $.actualPaths[{number}]", message)
         walks.append(_walk((column, row), HEADINGS.index(heading), path[::2]))
     stops: list[list[Cell]] = [[] for _ in walks]
     try:
         for robot, cell in _served(output.events, {task[0]: task for task in output.tasks}):
             stops[robot].append(cell)
     except (LookupError, TypeError, ValueError) as error:
-        raise wrong(f"{file}: $.events", "each event must name a robot, a task, and how much of it is done") from error
+        raise RIGHT_LOG.refuse(
+            f"{file}: $.events", "each event must name a robot, a task, and how much of it is done"
+        ) from error
     return CellLog(walks, stops)
 
 

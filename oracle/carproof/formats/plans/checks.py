@@ -23,7 +23,7 @@ def names_of(ids: Iterable[Id], what: str, code: Code) -> Mapping[Id, str]:
     taken: set[str] = set()
     for id in ids:
         if str(id) in taken:
-            raise Refusal("document", "INSTANCE", code.id, f"two {what} must not both print as {id}")
+            raise code.refuse("INSTANCE", f"two {what} must not both print as {id}")
         taken.add(str(id))
         names[id] = str(id)
     return names

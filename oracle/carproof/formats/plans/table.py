@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping
 from io import StringIO
 
-from carp_spec import Instance, Plan, Refusal, ResourceId, RobotId, Solution, Visit
+from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, Visit
 from carp_spec.rule import DESIGN
 from carproof.formats.adapter import Adapter, first_line
 from carproof.formats.plans.checks import names_of, require_lawful
@@ -37,7 +37,7 @@ def read(text: str, instance: Instance, file: str) -> Solution:
     }
     rows = csv.DictReader(StringIO(text.removeprefix("\ufeff")))
     if not {*COLUMNS} <= {*(rows.fieldnames or ())}:
-        raise Refusal("document", f"{file}:1", RIGHT_TABLE.id, f"the line must name the columns {', '.join(COLUMNS)}")
+        raise RIGHT_TABLE.refuse(f"{file}:1", f"the line must name the columns {', '.join(COLUMNS)}")
     visits: dict[RobotId, list[Visit]] = {}
     for number, row in enumerate(rows, start=2):
         require_bounded(number, file)
@@ -47,7 +47,7 @@ def read(text: str, instance: Instance, file: str) -> Solution:
             message = (
                 "the row must have a robot, a resource, and whole numbers of ticks, the last of which may be left out"
             )
-            raise Refusal("document", f"{file}:{number}", RIGHT_TABLE.id, message)
+            raise RIGHT_TABLE.refuse(f"{file}:{number}", message)
         visit = Visit(resource, int(enter), int(leave) if leave else None)
         visits.setdefault(robot, []).append(visit)
     return Solution.of(instance, (Plan(robot, tuple(each)) for robot, each in visits.items()))
