@@ -83,3 +83,10 @@ def test_cells_that_are_not_side_by_side_are_refused(where: tuple[int | None, in
     resources = (Resource("a", 1, 1, 0, 0), Resource("b", 1, 1, *where))
     with pytest.raises(Refusal, match="generate/headings"):
         with_headings(Instance(ResourceGraph(resources, (("a", "b"),)), ()))
+
+
+def test_moves_come_in_the_order_of_the_graph_in_every_process() -> None:
+    graph = grid_instance(Grid(width=5, height=5), Fleet(robots=0)).graph
+    made = with_headings(Instance(graph, ())).graph.edges[: len(graph.moves)]
+    cells = [tuple(graph.index[end.partition(" ")[0]] for end in map(str, move)) for move in made]
+    assert cells == sorted(cells)

@@ -7,7 +7,7 @@ counter-clockwise (R, C), and each takes the duration of the cell. To end takes 
 
 from dataclasses import replace
 
-from carp_spec import Instance, Move, Refusal, ResourceGraph, ResourceId
+from carp_spec import Instance, Move, ResourceGraph, ResourceId
 from carp_spec.inputs.values import require_instance
 from carp_spec.model import Group
 from carp_spec.rule import DESIGN
@@ -30,26 +30,24 @@ def parts_of(cell: ResourceId) -> tuple[str, ...]:
 
 def with_headings(instance: Instance) -> Instance:
     """The instance with split cells; robots start with the heading E. Raises `Refusal` where cells cannot be split."""
-
-    def refuse(path: str, message: str) -> Refusal:
-        return Refusal("document", path, CELLS_SIDE_BY_SIDE.id, message)
-
     require_instance(instance)
     graph = instance.graph
     if graph.groups:
-        raise refuse("$.graph.groups", "there must be no groups before cells are split")
+        raise CELLS_SIDE_BY_SIDE.refuse("$.graph.groups", "there must be no groups before cells are split")
     for index, robot in enumerate(instance.robots):
         if len(robot.stops) > 1 or robot.stops[0].service:
-            raise refuse(f"$.robots[{index}].stops", "robots must have goals alone, to be reached in any heading")
+            raise CELLS_SIDE_BY_SIDE.refuse(
+                f"$.robots[{index}].stops", "robots must have goals alone, to be reached in any heading"
+            )
     parts = {each: dict(zip(HEADINGS, parts_of(each), strict=True)) for each in graph.resource}
     moves: list[Move] = []
-    for source, target in graph.moves:
+    for source, target in sorted(graph.moves, key=lambda move: (graph.index[move[0]], graph.index[move[1]])):
         one, two = graph.resource[source], graph.resource[target]
         if one.x is None or one.y is None or two.x is None or two.y is None:
-            raise refuse("$.graph.resources", f"{source!r} and {target!r} must have positions")
+            raise CELLS_SIDE_BY_SIDE.refuse("$.graph.resources", f"{source!r} and {target!r} must have positions")
         way = (two.x - one.x, two.y - one.y)
         if way not in HEADINGS:
-            raise refuse("$.graph.edges", f"{source!r} and {target!r} must be side by side")
+            raise CELLS_SIDE_BY_SIDE.refuse("$.graph.edges", f"{source!r} and {target!r} must be side by side")
         moves.append((parts[source][way], parts[target][way]))
     ring = [*HEADINGS]
     for each, split in parts.items():
