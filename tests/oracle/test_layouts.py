@@ -2,6 +2,7 @@
 
 import json
 import re
+from contextlib import suppress
 from fractions import Fraction
 from itertools import permutations
 from pathlib import Path
@@ -23,6 +24,7 @@ from tests.oracle.running import Run
 
 from carp_spec import Instance, Plan, Refusal, Robot, Solution, Visit, judge
 from carproof import Settings, import_layout
+from carproof.layouts import READERS
 
 
 def imported(text: str, **settings: object) -> Instance:
@@ -309,3 +311,10 @@ def test_whole_numbers_and_texts_are_names_and_all_attributes_of_graphml_are_tex
         assert {"-7", "0", "true"} <= graph.resource.keys()
     graph = imported(GRAPHML.replace('"a"', '"true"').replace('"b"', '"1.5"'), robots=0).graph
     assert {"true", "1.5"} <= graph.resource.keys()
+
+
+@pytest.mark.parametrize("format", READERS)
+def test_a_layout_of_another_format_than_named_is_refused_or_has_nothing_to_read(format: str) -> None:
+    for text in LAYOUTS.values():
+        with suppress(Refusal):
+            import_layout(text.encode(), "plant", format, Settings(robots=0))

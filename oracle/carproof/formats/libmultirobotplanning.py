@@ -62,9 +62,8 @@ class _Schedule:
             raise self.refuse(f"there must be {right}")
         return event, kind
 
-    def fields(self, right: str) -> Iterator[str]:
-        """The names of a mapping's fields; the caller takes the field's value before it asks for the next."""
-        self.next("MappingStart", right=right)
+    def fields(self) -> Iterator[str]:
+        """The names of the fields of a mapping that has begun; the caller takes each value before it asks for more."""
         while True:
             event, kind = self.next("Scalar", "MappingEnd", right="a name")
             if kind == "MappingEnd":
@@ -84,26 +83,28 @@ class _Schedule:
         """The walk of each robot that has one."""
         self.next("StreamStart", right="a stream")
         self.next("DocumentStart", right="a field schedule")
+        self.next("MappingStart", right="a mapping with a field schedule")
         walks: dict[RobotId, Walk] | None = None
-        for name in self.fields("a mapping with a field schedule"):
+        for name in self.fields():
             if name != "schedule":
                 self.skip()
-            elif walks is None:
-                walks = self.agents()
-            else:
+            elif walks is not None:
                 raise self.refuse("there must be one field schedule, and there is a second")
+            else:
+                walks = self.agents()
         if walks is None:
             raise self.refuse("there must be a field schedule")
-        return walks
+        return {robot: walk for robot, walk in walks.items() if walk}
 
     def agents(self) -> dict[RobotId, Walk]:
+        self.next("MappingStart", right="a mapping of agents to lists")
         walks: dict[RobotId, Walk] = {}
-        for name in self.fields("a mapping of agents to lists"):
+        for name in self.fields():
             robot = self.robot(name)
             if robot in walks:
                 raise self.refuse(f"agent {name} must have one list, and has a second")
             walks[robot] = self.entries()
-        return {robot: walk for robot, walk in walks.items() if walk}
+        return walks
 
     def robot(self, name: str) -> RobotId:
         """The robot that the agent is."""
@@ -118,10 +119,7 @@ class _Schedule:
     def entries(self) -> Walk:
         walk: list[tuple[tuple[int, int], int]] = []
         self.next("SequenceStart", right="a list of entries with x, y and t")
-        while True:
-            _, kind = self.next("MappingStart", "SequenceEnd", right="an entry with x, y and t")
-            if kind == "SequenceEnd":
-                break
+        while self.next("MappingStart", "SequenceEnd", right="an entry with x, y and t")[1] == "MappingStart":
             values = self.entry()
             if walk and values["t"] <= walk[-1][1]:
                 raise self.refuse(f"the t must be larger than {walk[-1][1]}, the one before, and is {values['t']}")
@@ -130,14 +128,11 @@ class _Schedule:
 
     def entry(self) -> dict[str, int]:
         values: dict[str, int] = {}
-        while True:
-            name, kind = self.next("Scalar", "MappingEnd", right="a name")
-            if kind == "MappingEnd":
-                break
+        for name in self.fields():
             number, _ = self.next("Scalar", right="a whole number")
-            if name.value not in _FIELDS or name.value in values or _NUMBER.fullmatch(number.value) is None:
+            if name not in _FIELDS or name in values or _NUMBER.fullmatch(number.value) is None:
                 raise self.refuse("an entry must have x, y and t once each, whole numbers of at most nine digits")
-            values[name.value] = int(number.value)
+            values[name] = int(number.value)
         if len(values) != len(_FIELDS):
             raise self.refuse("an entry must have x, y and t")
         return values

@@ -140,6 +140,12 @@ class Tree:
             raise self.refuse(f"it must have {name}")
         return self.fields[name]
 
+    def first(self, count: int, missing: str, *, most: int | None = None) -> list["Tree"]:
+        """The first entries, of which there must be so many, and no more than `most`."""
+        if not count <= len(self.entries) <= (most or len(self.entries)):
+            raise self.refuse(missing)
+        return self.entries[:count]
+
     def get(self, *names: str) -> "Tree | None":
         """The first of these fields that there is."""
         return next((self.fields[name] for name in names if name in self.fields), None)

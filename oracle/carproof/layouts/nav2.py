@@ -37,8 +37,7 @@ def read(tree: Tree) -> Layout:
     for each in features:
         kind, properties = each["geometry"]["type"], each["properties"]
         if kind.value == "Point":
-            place = each["geometry"]["coordinates"]
-            x, y = _pair(place)
+            x, y = each["geometry"]["coordinates"].first(2, "a position must have x and y")
             layout.point(each, properties["id"].name, (METRE * x.number, METRE * y.number))
             frame = properties.get("frame")
             layout.note("frames of nodes other than map", frame if frame is not None and frame.value != "map" else None)
@@ -51,12 +50,6 @@ def read(tree: Tree) -> Layout:
         if each["geometry"]["type"].value in LINES:
             _edge(layout, each["properties"])
     return layout
-
-
-def _pair(place: Tree) -> tuple[Tree, Tree]:
-    if len(place.entries) < 2:  # noqa: PLR2004 - a position
-        raise place.refuse("a position must have x and y")
-    return place.entries[0], place.entries[1]
 
 
 def _edge(layout: Layout, edge: Tree) -> None:

@@ -7,7 +7,7 @@ on the ground east and north of the first vertex, by the lengths of a degree the
 which one robot may be at a time.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from decimal import Context, Decimal, localcontext
 from fractions import Fraction
 from functools import partial
@@ -98,9 +98,7 @@ def _add(groups: Groups, kind: str, named: Tree | None, at: Tree, *members: str)
 def _plain(value: Tree | None) -> Tree | None:
     """The value of a parameter; a building writes it behind the number of its type."""
     if value is not None and isinstance(value.value, list):
-        if len(value.value) != 2:  # noqa: PLR2004 - type and value
-            raise value.refuse("a parameter must be a type and a value")
-        return value.value[1]
+        return value.first(2, "a parameter must be a type and a value", most=2)[1]
     return value
 
 
@@ -109,7 +107,7 @@ def _scale(layout: Layout, level: Tree, before: Fraction) -> Fraction:
     places = [_place(vertex) for vertex in level.all("vertices")]
     found = []
     for each in level.all("measurements"):
-        one, two = (places[_index(end, len(places))] for end in _ends(each))
+        one, two = (places[end] for end in _ends(each, len(places)))
         square = (one[0] - two[0]) ** 2 + (one[1] - two[1]) ** 2
         distance = _plain(each.entries[2].get("distance")) if len(each.entries) > 2 else None  # noqa: PLR2004
         if distance is None or not square:
@@ -122,21 +120,16 @@ def _scale(layout: Layout, level: Tree, before: Fraction) -> Fraction:
 
 
 def _place(vertex: Tree) -> Place:
-    if len(vertex.entries) < 2:  # noqa: PLR2004 - a position
-        raise vertex.refuse("a vertex must have x and y")
-    return vertex.entries[0].number, vertex.entries[1].number
+    x, y = vertex.first(2, "a vertex must have x and y")
+    return x.number, y.number
 
 
-def _ends(thing: Tree) -> tuple[Tree, Tree]:
-    if len(thing.entries) < 2:  # noqa: PLR2004 - both ends
-        raise thing.refuse("it must have two ends")
-    return thing.entries[0], thing.entries[1]
-
-
-def _index(end: Tree, count: int) -> int:
-    if (index := end.whole) >= count:
-        raise end.refuse(f"it must be one of the {count} vertices of the level, counted from 0, not {index}")
-    return index
+def _ends(thing: Tree, count: int) -> Iterator[int]:
+    """The numbers of the vertices at both ends, of so many."""
+    for end in thing.first(2, "it must have two ends"):
+        if (index := end.whole) >= count:
+            raise end.refuse(f"it must be one of the {count} vertices of the level, counted from 0, not {index}")
+        yield index
 
 
 def _options(level: Tree) -> list[tuple[Tree, Mapping[str, Tree]]]:
@@ -201,7 +194,7 @@ def _vertices(layout: Layout, level: Tree, onto: Onto, prefix: str) -> list[str]
 
 
 def _lane(layout: Layout, lane: Tree, ids: list[str], groups: Groups) -> None:
-    source, target = (ids[_index(end, len(ids))] for end in _ends(lane))
+    source, target = (ids[end] for end in _ends(lane, len(ids)))
     options = lane.entries[2].fields if len(lane.entries) > 2 else {}  # noqa: PLR2004 - both ends and parameters
     both = _plain(options.get("bidirectional") or options.get("is_bidirectional"))
     limit = _plain(options.get("speed_limit"))

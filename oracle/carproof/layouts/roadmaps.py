@@ -36,9 +36,7 @@ def read_annotated(tree: Tree) -> Layout:
     both = roadmap["undirected"].is_true
     lanes: list[tuple[str, ...]] = []
     for edge in edges:
-        if len(edge.entries) != 2:  # noqa: PLR2004 - both ends
-            raise edge.refuse("an edge must have two ends")
-        source, target = (end.text for end in edge.entries)
+        source, target = (end.text for end in edge.first(2, "an edge must have two ends", most=2))
         if source not in layout.points:
             raise edge.refuse(f"the vertex {source!r} must be one of the roadmap")
         lanes.append((source,) if source == target else layout.lane(edge, None, (source, target), back=both))
@@ -75,9 +73,8 @@ def _conflicts(layout: Layout, roadmap: Tree, lanes: list[tuple[str, ...]]) -> N
 
 
 def _place(place: Tree) -> tuple[Fraction, Fraction]:
-    if len(place.entries) != 2:  # noqa: PLR2004 - a position
-        raise place.refuse("a position must be x and y")
-    return METRE * place.entries[0].number, METRE * place.entries[1].number
+    x, y = place.first(2, "a position must be x and y", most=2)
+    return METRE * x.number, METRE * y.number
 
 
 def _looks_plain(tree: Tree) -> bool:
@@ -118,8 +115,7 @@ def read_plain(tree: Tree) -> Layout:
 
 
 def _node_link(tree: Tree) -> tuple[list[Tree], list[Tree], bool]:
-    directed, edges = tree.get("directed"), tree.get("links", "edges")
-    assert edges is not None  # noqa: S101 - by its looks
+    directed, edges = tree.get("directed"), tree.get("links") or tree["edges"]
     return tree["nodes"].entries, edges.entries, directed is not None and directed.is_true
 
 
