@@ -1,11 +1,13 @@
 """`carproof experiment`: run an experiment of the paper, or continue one."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import click
+import msgspec
 
+from carp_experiments.campaign import Backend, Case, Workers, run_campaign
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
 from carp_experiments.measuring.benchmark import benchmark_cases, benchmark_report
 from carp_experiments.measuring.blocks import Questions
@@ -13,7 +15,8 @@ from carp_experiments.measuring.crosscheck_campaign import CROSSCHECKS, Kind
 from carp_experiments.measuring.kernel_texts import TEXTS
 from carp_experiments.measuring.kernel_verdicts import VERDICTS
 from carp_experiments.paper.map_cases import SORTING, WAREHOUSE
-from carp_experiments.recomputed import AGAIN, DRAWN, again_report, cases_again
+from carp_experiments.report import ExperimentReport, write_report
+from carp_experiments.store import Row, open_store, stored_rows
 from carp_verify.kernel import program
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document
@@ -22,17 +25,11 @@ from carproof.command_line.tables import print_line, print_table
 from carproof.extras import require
 from carproof.progress import progress
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from carp_experiments.campaign import Case, Workers
-    from carp_experiments.report import ExperimentReport
-    from carp_experiments.store import Row
-
 FOLDER = click.Path(path_type=Path, file_okay=False, exists=True)
 TABLE = click.Path(path_type=Path, dir_okay=False, exists=True)
 AT_LEAST_1 = click.IntRange(min=1)
 PROGRAM = click.Path(dir_okay=False, exists=True, resolve_path=True)
+RECOMPUTED = ("gap", "related", "quality", "time", "polish", "reuse", "neighbours", "nearest")
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -73,15 +70,6 @@ def campaign_options(function: F) -> F:
     for option in reversed(options):
         function = option(function)
     return function
-
-
-def chosen_workers(count: int, backend: str, scheduler: str | None) -> "Workers":
-    """The workers; raises `UsageError` if an option is missing."""
-    from carp_experiments.campaign import Workers  # noqa: PLC0415
-
-    if backend == "dask" and scheduler is None:
-        raise click.UsageError("The backend dask needs the address of its --scheduler.")
-    return Workers(count, "dask" if backend == "dask" else "loky", scheduler)
 
 
 def command_of(experiment: Experiment) -> click.Command:
@@ -206,9 +194,9 @@ def benchmark(  # noqa: PLR0913, PLR0917 - one parameter for each option
 
 
 @command.command("recomputed")
-@click.argument("experiment", metavar="EXPERIMENT", type=click.Choice([*AGAIN]))
+@click.argument("experiment", metavar="EXPERIMENT", type=click.Choice(RECOMPUTED))
 @click.argument("stored", metavar="STORED", type=TABLE)
-@click.option("--cases", "count", type=AT_LEAST_1, default=DRAWN, show_default=True, help="How many cases.")
+@click.option("--cases", "count", type=AT_LEAST_1, default=50, show_default=True, help="How many cases.")
 @click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, show_default=True, help="The seed of the draw.")
 @click.option("--robots", type=AT_LEAST_1, help="How many robots the stored run has, if not in full size.")
 @campaign_options
@@ -227,7 +215,7 @@ def recomputed(
 
     Exit codes: 0 all equal, 1 a case is not, 2 bad usage.
     """
-    from carp_experiments.store import stored_rows  # noqa: PLC0415 - loaded with the experiment
+    from carp_experiments.recomputed import again_report, cases_again  # noqa: PLC0415 - loads compiled code
 
     size = robots or next(each.full.robots for each in EXPERIMENTS if each.name == experiment)
     cases = cases_again(experiment, stored_rows(stored, f"{experiment} of {size} robots"), size, count, seed)
@@ -267,31 +255,25 @@ def go(  # noqa: PLR0913 - the campaign's options
     identity: str,
     command: str,
     size: str,
-    cases: "Sequence[Case]",
-    report_of: "Callable[[Iterable[Row]], ExperimentReport]",
+    cases: Sequence[Case],
+    report_of: Callable[[Iterable[Row]], ExperimentReport],
     *,
     store: Path | None,
     report: Path | None,
     note: str,
     workers: int,
-    backend: str,
+    backend: Backend,
     scheduler: str | None,
     as_json: bool,
 ) -> Answer:
     """Run the cases that the store does not have, and report on all cases."""
-    import msgspec  # noqa: PLC0415 - loaded with the experiment
-
-    from carp_experiments.campaign import run_campaign  # noqa: PLC0415
-    from carp_experiments.redrawing import draw_figures  # noqa: PLC0415
-    from carp_experiments.report import write_report  # noqa: PLC0415
-    from carp_experiments.store import open_store  # noqa: PLC0415
-
     require("joblib", *(["matplotlib"] if report is not None else []), *(["distributed"] if backend == "dask" else []))
-    who = chosen_workers(workers, backend, scheduler)  # before the store is there
+    if backend == "dask" and scheduler is None:
+        raise click.UsageError("The backend dask needs the address of its --scheduler.")
     keys = [case.key for case in cases]
     with open_store(store, identity) as results:
         with progress(name, len(cases)) as advance:
-            run_campaign(cases, results, who, advance)
+            run_campaign(cases, results, Workers(workers, backend, scheduler), advance)
         reported = report_of(row for _, row in results.rows(keys))
         facts = {
             "command": command,
@@ -302,6 +284,8 @@ def go(  # noqa: PLR0913 - the campaign's options
             "note": note,
         }
     if report is not None:
+        from carp_experiments.redrawing import draw_figures  # noqa: PLC0415 - loads compiled code
+
         write_report(report, name, reported, facts)
         draw_figures(report, name, report)
     if as_json:

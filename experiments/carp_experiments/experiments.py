@@ -1,33 +1,19 @@
 """All experiments by name: their sizes, their cases and their reports."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from itertools import product
+from pkgutil import resolve_name
 
-from carp_experiments.beyond.delayed import execution_report, execution_row
-from carp_experiments.beyond.following import following_report, following_row
-from carp_experiments.beyond.left_out import left_out_report, left_out_row
-from carp_experiments.beyond.lifelong import lifelong_report, lifelong_row
-from carp_experiments.beyond.neighbours import neighbours_report, neighbours_row
-from carp_experiments.beyond.people import people_report, people_row
-from carp_experiments.beyond.streams import stream_report, stream_row
-from carp_experiments.paper.adding_time import PAPERS_MAP, time_report, time_row
-from carp_experiments.paper.conventions import CONVENTIONS, NEAREST, remaining_row, row_under
-from carp_experiments.paper.conventions_report import conventions_report
 from carp_experiments.paper.map_cases import FULL_MAP, SORTING, WAREHOUSE, MapCase
-from carp_experiments.paper.polishing import polish_report, polish_row
-from carp_experiments.paper.quality import quality_row
-from carp_experiments.paper.quality_report import quality_report
-from carp_experiments.paper.related_work import related_report, related_row
-from carp_experiments.paper.reuse_counts import reuse_report, reuse_row
-from carp_experiments.paper.small_gaps import SIDE, gap_report, gap_row
 from carp_experiments.report import ExperimentReport
 from carp_experiments.store import Row
 from carp_spec import Refusal
+from carproof.generate.options import ends_suffice
 
 ALL_MAPS = tuple(range(FULL_MAP + 1))
 SOME_MAPS = (0, 5, 10, 15, 20)
+PAPERS_MAP = 15
 MOST_STREAMED = 100_000
 
 
@@ -54,25 +40,33 @@ class Profile:
 
 @dataclass(frozen=True, slots=True)
 class Experiment:
-    """An experiment. The case of an assignment and a map is the same in every profile with as many robots."""
+    """An experiment. The case of an assignment and a map is the same in every profile with as many robots.
+
+    `compute` and `summarise` name functions, which are loaded when they are needed, for numba is slow to load: the
+    former makes the row of a case, the latter a report of rows and the number of robots.
+    """
 
     name: str
     sentence: str
     full: Profile
     quick: Profile
-    compute: Callable[[MapCase], Row]
-    report: Callable[[Iterable[Row], int], ExperimentReport]
+    compute: str
+    summarise: str
     places: int = 400
 
     def cases(self, profile: Profile) -> Sequence[MapCase]:
         """The cases, assignment by assignment, so that a run that is stopped has whole assignments."""
+        compute = resolve_name(f"carp_experiments.{self.compute}")
         places = product(range(profile.assignments), profile.maps)
-        return [MapCase(self.compute, map, assignment, profile.robots) for assignment, map in places]
+        return [MapCase(compute, map, assignment, profile.robots) for assignment, map in places]
+
+    def report(self, rows: Iterable[Row], robots: int) -> ExperimentReport:
+        """The report of rows."""
+        report: ExperimentReport = resolve_name(f"carp_experiments.{self.summarise}")(rows, robots)
+        return report
 
     def refuse(self, profile: Profile) -> None:
         """Raise `Refusal` where the maps have no place for this many robots."""
-        from carproof.generate.options import ends_suffice  # noqa: PLC0415 - imports what imports this
-
         if not ends_suffice(self.places, profile.robots):
             message = f"{profile.robots} robots need as many distinct starts, and the map has {self.places}"
             raise Refusal("option", "$.robots", ends_suffice.id, message)
@@ -84,121 +78,121 @@ EXPERIMENTS = (
         "Experiment 1 of the paper: failures and total cost, over the maps.",
         Profile(500, 100, ALL_MAPS),
         Profile(20, 30, SOME_MAPS),
-        quality_row,
-        quality_report,
+        "paper.quality:quality_row",
+        "paper.quality_report:quality_report",
     ),
     Experiment(
         "time",
         "Experiment 2 of the paper: time to plan when the k-th robot comes.",
         Profile(500, 100, (PAPERS_MAP,)),
         Profile(20, 50, (PAPERS_MAP,)),
-        time_row,
-        lambda rows, _: time_report(rows),
+        "paper.adding_time:time_row",
+        "paper.adding_time:time_report",
     ),
     Experiment(
         "reuse",
         "Queries asked to add a robot, avoided, and why.",
         Profile(500, 100, (PAPERS_MAP,)),
         Profile(20, 50, (PAPERS_MAP,)),
-        reuse_row,
-        reuse_report,
+        "paper.reuse_counts:reuse_row",
+        "paper.reuse_counts:reuse_report",
     ),
     Experiment(
         "gap",
-        f"Small maps, {SIDE} x {SIDE}, against the optimum.",
+        "Small maps, 8 x 8, against the optimum.",
         Profile(100, 10, ALL_MAPS),
         Profile(20, 6, SOME_MAPS),
-        gap_row,
-        gap_report,
-        places=SIDE * SIDE,
+        "paper.small_gaps:gap_row",
+        "paper.small_gaps:gap_report",
+        places=8 * 8,
     ),
     Experiment(
         "related",
         "Fixed paths, k shortest and k disjoint, and greedy best-first, against CARP.",
         Profile(100, 100, ALL_MAPS),
         Profile(5, 10, (10, 20)),
-        related_row,
-        related_report,
+        "paper.related_work:related_row",
+        "paper.related_work:related_report",
     ),
     Experiment(
         "polish",
         "The distance of the planner, and of polished plans, from a proved lower bound.",
         Profile(100, 100, ALL_MAPS),
         Profile(8, 20, (10, 20)),
-        polish_row,
-        polish_report,
+        "paper.polishing:polish_row",
+        "paper.polishing:polish_report",
     ),
     Experiment(
         "conventions",
         "What the paper leaves open: under which conventions its numbers come out.",
         Profile(100, 100, (10, FULL_MAP)),
         Profile(2, 30, (10, FULL_MAP)),
-        partial(row_under, CONVENTIONS),
-        conventions_report,
+        "paper.conventions:conventions_row",
+        "paper.conventions_report:conventions_report",
     ),
     Experiment(
         "nearest",
         "The conventions that bring the paper's numbers out best, over more assignments.",
         Profile(100, 100, (10, FULL_MAP)),
         Profile(2, 30, (10, FULL_MAP)),
-        partial(row_under, NEAREST),
-        conventions_report,
+        "paper.conventions:nearest_row",
+        "paper.conventions_report:conventions_report",
     ),
     Experiment(
         "remaining",
         "Conventions that the screening left out: divisors of the distance, and plans kept where CARP fails.",
         Profile(100, 100, (10, FULL_MAP)),
         Profile(2, 30, (10, FULL_MAP)),
-        remaining_row,
-        conventions_report,
+        "paper.conventions:remaining_row",
+        "paper.conventions_report:conventions_report",
     ),
     Experiment(
         "neighbours",
         "Where the neighbourhood planner helps: kinds of instances, M, and polish for the same time.",
         Profile(20, 100, (5, 10, 15, FULL_MAP)),
         Profile(2, 20, (10, FULL_MAP)),
-        neighbours_row,
-        lambda rows, _: neighbours_report(rows),
+        "beyond.neighbours:neighbours_row",
+        "beyond.neighbours:neighbours_report",
     ),
     Experiment(
         "left-out",
         "Robots that carproof plan leaves out, before and after its repair.",
         Profile(100, 100, ALL_MAPS),
         Profile(5, 60, SOME_MAPS),
-        left_out_row,
-        lambda rows, _: left_out_report(rows),
+        "beyond.left_out:left_out_row",
+        "beyond.left_out:left_out_report",
     ),
     Experiment(
         "execution",
         "Late robots on the clock, in order and switching: lateness, arrivals and collisions.",
         Profile(4, 40, (10, 15, FULL_MAP, WAREHOUSE)),
         Profile(2, 10, (10, 20)),
-        execution_row,
-        lambda rows, _: execution_report(rows),
+        "beyond.delayed:execution_row",
+        "beyond.delayed:execution_report",
     ),
     Experiment(
         "following",
         "The price of plans without rotations: following forbidden, and rotations removed.",
         Profile(20, 60, (10, 15, FULL_MAP, WAREHOUSE)),
         Profile(4, 20, (10, FULL_MAP)),
-        following_row,
-        lambda rows, _: following_report(rows),
+        "beyond.following:following_row",
+        "beyond.following:following_report",
     ),
     Experiment(
         "people",
         "People with priority among robots: how early they arrive, and the cost for the robots.",
         Profile(20, 100, (FULL_MAP,)),
         Profile(5, 30, (FULL_MAP,)),
-        people_row,
-        people_report,
+        "beyond.people:people_row",
+        "beyond.people:people_report",
     ),
     Experiment(
         "stream",
         "Robots that come at random, at several rates: throughput up to saturation, and waiting.",
         Profile(4, 500, (10, FULL_MAP, WAREHOUSE)),
         Profile(2, 200, (10, FULL_MAP)),
-        stream_row,
-        stream_report,
+        "beyond.streams:stream_row",
+        "beyond.streams:stream_report",
         places=MOST_STREAMED,
     ),
     Experiment(
@@ -206,8 +200,8 @@ EXPERIMENTS = (
         "Pick-and-drop orders that come at random: throughput, time in the system and time an order.",
         Profile(4, 200, (10, FULL_MAP, WAREHOUSE, SORTING)),
         Profile(2, 30, (10, FULL_MAP)),
-        lifelong_row,
-        lifelong_report,
+        "beyond.lifelong:lifelong_row",
+        "beyond.lifelong:lifelong_report",
         places=MOST_STREAMED,
     ),
 )

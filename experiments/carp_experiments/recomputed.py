@@ -9,26 +9,27 @@ reference is left out: bounds, optima, times, long polishes and the planner of `
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, TypeAlias, cast
+from typing import TypeAlias, cast
 from unittest.mock import patch
 
+import carp_optimized
+import carp_reference
+import carp_reference.neighbourhood
 from carp_experiments.beyond.neighbours import CARP, KINDS, PLAIN, POLISH, ROUNDS, kind_instance, named
 from carp_experiments.paper.conventions import LONGEST_FIRST, Convention, longest_first, one_pass, world_of
 from carp_experiments.paper.map_cases import MapCase, instance_of, map_instance
 from carp_experiments.paper.quality import ALGORITHMS, seeded
 from carp_experiments.paper.related_work import FIXED, costs_of
 from carp_experiments.paper.small_gaps import COMPARED, small_instance
+from carp_experiments.paper.space_time import World
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
+from carp_reference.query import find_plan
 from carp_spec import Carp, Greedy, Instance, LongestFirst, Neighbourhood, Plan, Planner, Solution, Visit, total_cost
 from carp_spec.permutations import shuffle, splitmix64
-
-if TYPE_CHECKING:
-    from carp_experiments.paper.space_time import World
-    from carproof.generate.options import Distinct
+from carproof.generate import Fleet
 
 Found: TypeAlias = Sequence[int | None]
-DRAWN = 50
 POLISHED = f": {CARP}, and {ROUNDS[0]} rounds of polish"
 PAIRS = f"{PLAIN}: {named(2)}"
 ADDED = "Proposed_"
@@ -88,8 +89,6 @@ class Again:
 
 def again(experiment: str, case: MapCase, algorithm: str, stored: Found) -> Found:
     """What the reference finds, as `results_of` has it."""
-    import carp_reference  # noqa: PLC0415 - each worker loads it
-
     if experiment == "related":
         instance = instance_of(case)
         return costs_of(instance, carp_reference.plan(instance, RELATED[algorithm]).plans)
@@ -111,9 +110,6 @@ def again(experiment: str, case: MapCase, algorithm: str, stored: Found) -> Foun
 
 def queries_asked(case: MapCase, m: int) -> int:
     """The queries that the reference asks to add the last robot to the plans of CARP for the others."""
-    import carp_reference.neighbourhood  # noqa: PLC0415 - each worker loads it
-    from carp_reference.query import find_plan  # noqa: PLC0415
-
     instance = instance_of(case)
     *others, last = instance.robots
     committed = carp_reference.plan(first_robots(instance, len(others)), Carp())
@@ -126,9 +122,6 @@ def queries_asked(case: MapCase, m: int) -> int:
 
 def added_last(case: MapCase) -> Found:
     """The robots planned and their total, the reference adding the last ones to the compiled plans of the others."""
-    import carp_optimized  # noqa: PLC0415 - each worker loads it
-    import carp_reference  # noqa: PLC0415
-
     instance = instance_of(case)
     planner = cast("Neighbourhood", seeded(ALGORITHMS[f"{ADDED}4"], case.assignment))
     first = first_robots(instance, max(len(instance.robots) - LAST, 0))
@@ -140,8 +133,6 @@ def added_last(case: MapCase) -> Found:
 
 def neighbours_again(case: MapCase, algorithm: str) -> Found:
     """The totals of CARP and of a short polish of its plans on one kind of instance, or of pairs planned together."""
-    import carp_reference  # noqa: PLC0415 - each worker loads it
-
     instance = kind_instance(case, algorithm.partition(":")[0])
     if algorithm == PAIRS:
         return [total_cost(instance, carp_reference.plan(instance, Neighbourhood(m=2, seed=case.assignment)).plans)]
@@ -155,8 +146,6 @@ def nearest_again(case: MapCase, algorithm: str) -> Found:
 
     Ties are broken in another way than by the reference, so this takes over the plans of the robots before.
     """
-    import carp_reference  # noqa: PLC0415 - each worker loads it
-
     name, _, which = algorithm.partition(": ")
     instance, world = law_of(case, LAWFUL[name]), world_of(case, LAWFUL[name])
     order = range(case.robots) if which == CARP else longest_first(world)
@@ -172,13 +161,11 @@ def nearest_again(case: MapCase, algorithm: str) -> Found:
 
 def law_of(case: MapCase, convention: Convention) -> Instance:
     """The instance of a convention that the law has."""
-    from carproof.generate import Fleet  # noqa: PLC0415 - each worker loads it
-
-    distinct: Distinct = "starts" if convention.goals_repeated else "both"
-    return map_instance(case.map, Fleet(robots=case.robots, seed=case.assignment, distinct=distinct))
+    fleet = Fleet(robots=case.robots, seed=case.assignment)
+    return map_instance(case.map, replace(fleet, distinct="starts") if convention.goals_repeated else fleet)
 
 
-def plans_of(world: "World", instance: Instance, order: Sequence[int]) -> list[Plan]:
+def plans_of(world: World, instance: Instance, order: Sequence[int]) -> list[Plan]:
     """The plans of the planner of `conventions` as the law reads them."""
     plans = []
     for robot in order:

@@ -29,7 +29,7 @@ def test_late_robots_collide_on_the_clock_alone_and_nobody_stands() -> None:
         assert all(each.collisions == each.standing == 0 for each in (*in_order, *switching))
         assert switching[-1].switches > 0
         assert switching[-1].late <= in_order[-1].late
-    summary = msgspec.convert(execution_report([row, row]).summary, tuple[DriverOf, ...])
+    summary = msgspec.convert(execution_report([row, row], 30).summary, tuple[DriverOf, ...])
     assert {each.executions for each in summary} == {2}
     assert all(each.worst.estimate >= each.late.estimate for each in summary)
     figures = {figure.name: figure for figure in execution_figures(summary)}
@@ -40,7 +40,7 @@ def test_late_robots_collide_on_the_clock_alone_and_nobody_stands() -> None:
 
 
 def following_of_places(rows: Iterable[Row]) -> tuple[FollowingOf, ...]:
-    return msgspec.convert(following_report(rows).summary, tuple[FollowingOf, ...])
+    return msgspec.convert(following_report(rows, 60).summary, tuple[FollowingOf, ...])
 
 
 def test_without_following_there_is_no_rotation_and_plans_cost_more() -> None:
@@ -53,7 +53,7 @@ def test_without_following_there_is_no_rotation_and_plans_cost_more() -> None:
         {"map": 7, "planners": {name: {**priced, **other} for name in PLANNERS}}
         for other in ({}, {"totals": [100, 120], "rotations": 0, "extra": 0})
     ]
-    (line, _) = following_report(rows).tables[0].rows
+    (line, _) = following_report(rows, 60).tables[0].rows
     assert (line[3], line[4][:5], line[5:7]) == ("1.0 ± 0.0", "15.00", ("1/2", "0"))
     assert line[8].startswith("1.000")
     (figure,) = following_figures(following_of_places(rows))

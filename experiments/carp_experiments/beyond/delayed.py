@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import msgspec
 
+import carp_optimized as engine
 from carp_experiments.paper.map_cases import FULL_MAP, MapCase, instance_of, place_name, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
 from carp_experiments.report import ExperimentReport, Figure, Table, table_of
@@ -59,8 +60,6 @@ class ExecutionRow(msgspec.Struct, frozen=True):
 
 def execution_row(case: MapCase) -> Row:
     """The executions of each planner's solution."""
-    import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
-
     instance = instance_of(case)
     found = {}
     for name in PLANNERS:
@@ -114,7 +113,7 @@ class DriverOf:
     switches: Interval
 
 
-def execution_report(rows: Iterable[Row]) -> ExperimentReport:
+def execution_report(rows: Iterable[Row], _robots: int) -> ExperimentReport:
     """A table of each map."""
     summary = tuple(
         driver_of(map, planner, driver, place, [row.planners[planner].drivers[driver][place] for row in each])

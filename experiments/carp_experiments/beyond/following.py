@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import msgspec
 
+import carp_optimized as engine
 from carp_experiments.beyond.delayed import PLANNERS
 from carp_experiments.paper.map_cases import MAP_AXIS, WAREHOUSE, MapCase, instance_of, place_name, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
@@ -39,8 +40,6 @@ class FollowingRow(msgspec.Struct, frozen=True):
 
 def following_row(case: MapCase) -> Row:
     """Both prices, for the solution of each planner."""
-    import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
-
     allowed = instance_of(case)
     forbidden = replace(allowed, following="forbidden")
     found = {}
@@ -81,7 +80,7 @@ class FollowingOf:
     extra: Interval
 
 
-def following_report(rows: Iterable[Row]) -> ExperimentReport:
+def following_report(rows: Iterable[Row], _robots: int) -> ExperimentReport:
     """A table of all maps."""
     by_map = rows_by_map(rows, FollowingRow)
     summary = tuple(

@@ -5,17 +5,16 @@ from dataclasses import dataclass
 
 import msgspec
 
+import carp_optimized as engine
 from carp_experiments.paper.map_cases import MapCase, instance_of, rows_by_map
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.store import Row
+from carp_optimized.improve.repair import repair
 from carp_spec import RobotId, total_cost, violations_of
 
 
 def left_out_row(case: MapCase) -> Row:
     """How many robots the default planner leaves out, which the repair leaves out, and the total in the end."""
-    import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
-    from carp_optimized.improve.repair import repair  # noqa: PLC0415
-
     instance = instance_of(case)
     given = engine.plan(instance)
     repaired = repair(instance, given)
@@ -44,7 +43,7 @@ class LeftOut:
     after: int
 
 
-def left_out_report(rows: Iterable[Row]) -> ExperimentReport:
+def left_out_report(rows: Iterable[Row], _robots: int) -> ExperimentReport:
     """A table of the maps, and a line for each assignment in which the repair leaves somebody out."""
     by_map = rows_by_map(rows, LeftOutRow)
     maps = tuple(

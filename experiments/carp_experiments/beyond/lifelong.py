@@ -17,6 +17,7 @@ from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_spec import Instance, Neighbourhood, Plan, RobotId, Stop, violations_of
 from carp_spec.permutations import splitmix64
+from carproof import Fleet
 
 RATES = (200, 400, 800)
 SERVICE = 5
@@ -50,8 +51,6 @@ def lifelong_row(case: MapCase) -> Row:
 
 def served(case: MapCase, name: str, rate: int) -> Served:
     """Take up the orders of a stream; raises `AssertionError` if one has no plan, or plans break a rule."""
-    from carproof import Fleet  # noqa: PLC0415 - each worker loads it
-
     planner, rounds = PLANNERS[name]
     instance = order_instance(case, rate)
     fleet = Fleet(replace(instance, robots=()), planner=planner)

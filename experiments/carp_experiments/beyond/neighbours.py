@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from statistics import fmean
 from time import thread_time_ns
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import msgspec
 
@@ -18,10 +18,9 @@ from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, rows_by_map
 from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
+from carp_optimized.fleet import PlannedFleet
 from carp_spec import Group, Instance, Neighbourhood
-
-if TYPE_CHECKING:
-    from carp_optimized.fleet import PlannedFleet
+from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 
 Point: TypeAlias = tuple[int, int]
 """A total, and the nanoseconds that it took."""
@@ -62,8 +61,6 @@ def neighbours_row(case: MapCase) -> Row:
 
 def compared(case: MapCase, kind: str) -> Mapping[str, Sequence[Point]]:
     """Total and nanoseconds of each method on one kind; raises `AssertionError` if a robot stays unplanned."""
-    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - each worker loads it
-
     fleet = PlannedFleet(kind_instance(case, kind))
     sizes = SIZES if kind == PLAIN else (USUAL,)
     for m in sizes:  # what is loaded once is not counted
@@ -83,7 +80,7 @@ def compared(case: MapCase, kind: str) -> Mapping[str, Sequence[Point]]:
     return {**found, POLISH: [(total, carp + spent) for total, spent in curve]}
 
 
-def add_all(fleet: "PlannedFleet", case: MapCase, m: int) -> None:
+def add_all(fleet: PlannedFleet, case: MapCase, m: int) -> None:
     """Add the robots in turn."""
     planner = Neighbourhood(m=m, sample=SAMPLE if m >= DRAWN_FROM else None, seed=case.assignment)
     fleet.clear()
@@ -91,7 +88,7 @@ def add_all(fleet: "PlannedFleet", case: MapCase, m: int) -> None:
         fleet.add(robot, 0, planner)
 
 
-def polished(fleet: "PlannedFleet", case: MapCase, rounds: Sequence[int]) -> list[Point]:
+def polished(fleet: PlannedFleet, case: MapCase, rounds: Sequence[int]) -> list[Point]:
     """The totals after these numbers of rounds from the plans of CARP, and the nanoseconds until then."""
     fleet.carp(range(case.robots))
     began = thread_time_ns()
@@ -104,7 +101,7 @@ def polished(fleet: "PlannedFleet", case: MapCase, rounds: Sequence[int]) -> lis
     return curve
 
 
-def total_of(fleet: "PlannedFleet") -> int:
+def total_of(fleet: PlannedFleet) -> int:
     """The total of a fleet that is planned whole."""
     unplanned, total = fleet.worth
     if unplanned:
@@ -114,8 +111,6 @@ def total_of(fleet: "PlannedFleet") -> int:
 
 def kind_instance(case: MapCase, kind: str) -> Instance:
     """The robots of a case on a map of one kind, each in the dock of its start."""
-    from carproof.generate import Fleet, Grid, Range, Traits, grid_instance  # noqa: PLC0415 - each worker loads it
-
     fleet, traits = Fleet(robots=case.robots, seed=case.assignment), Traits()
     match kind:
         case "durations":
@@ -167,7 +162,7 @@ class Helped:
     times: float
 
 
-def neighbours_report(rows: Iterable[Row]) -> ExperimentReport:
+def neighbours_report(rows: Iterable[Row], _robots: int) -> ExperimentReport:
     """Tables by kind and by M."""
     summary = tuple(
         helped(map, kind, m, stored)

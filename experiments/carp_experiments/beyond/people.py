@@ -7,6 +7,7 @@ from time import process_time_ns
 
 import msgspec
 
+import carp_optimized as engine
 from carp_experiments.paper.map_cases import MapCase, instance_of, place_name, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
 from carp_experiments.report import ExperimentReport, Figure, table_of
@@ -48,8 +49,6 @@ class PeopleRow(msgspec.Struct, frozen=True):
 
 def people_row(case: MapCase) -> Row:
     """Give priority to one traveller after the other."""
-    import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
-
     instance = instance_of(case)
     solution = given = engine.plan(instance, seeded(ALGORITHMS[GIVEN], case.assignment))
     drawn = list(shuffle([*instance.robot], splitmix64(case.assignment)))

@@ -15,7 +15,9 @@ from carp_experiments.paper.quality import ALGORITHMS, seeded
 from carp_experiments.report import ExperimentReport, Figure, table_of
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
+from carp_optimized.fleet import PlannedFleet
 from carp_spec import Instance, Neighbourhood, Plan, Resource, ResourceGraph, total_cost, violations_of
+from carproof.generate import Fleet, Range
 
 PLANNERS = ("CARP", "Proposed_4 + baseline")
 TICKS = 100
@@ -51,8 +53,6 @@ def stream_row(case: MapCase) -> Row:
 
 def streamed(case: MapCase, name: str, rate: int) -> Streamed:
     """Plan the robots of a stream, each when it comes; raises `AssertionError` if one has no plan or breaks a rule."""
-    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - each worker loads it
-
     instance = stream_instance(case, rate)
     fleet = PlannedFleet(instance)
     planner = seeded(ALGORITHMS[name], case.assignment)
@@ -76,8 +76,6 @@ def middle_half(plans: Sequence[Plan]) -> int:
 
 def stream_instance(case: MapCase, rate: int) -> Instance:
     """The robots of a stream with that rate, each in the dock of its start."""
-    from carproof.generate import Fleet, Range  # noqa: PLC0415 - each worker loads it
-
     last = max(0, case.robots * TICKS // rate - 1)
     fleet = Fleet(robots=case.robots, seed=case.assignment, distinct="none", release=Range(0, last))
     return docked(map_instance(case.map, fleet))

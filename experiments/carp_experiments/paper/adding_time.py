@@ -9,21 +9,17 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 from time import thread_time_ns
-from typing import TYPE_CHECKING
 
 import msgspec
 
-from carp_experiments.paper.map_cases import MapCase, fleet_of
+from carp_experiments.paper.map_cases import MapCase, instance_of
 from carp_experiments.paper.quality import ALGORITHMS, outcome, seeded
 from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
+from carp_optimized.fleet import PlannedFleet
 from carp_spec import Neighbourhood, Planner, Shuffled
 
-if TYPE_CHECKING:
-    from carp_optimized.fleet import PlannedFleet
-
-PAPERS_MAP = 15
 STEP = 5
 SHOWN = (50, 100)
 PAPER: Mapping[str, tuple[float, float]] = {
@@ -41,7 +37,7 @@ PAPER: Mapping[str, tuple[float, float]] = {
 
 def time_row(case: MapCase) -> Row:
     """Nanoseconds at the first robot, every fifth and the last, and the number of robots planned by each algorithm."""
-    fleet = fleet_of(case)
+    fleet = PlannedFleet(instance_of(case))
     planners = {name: seeded(ALGORITHMS[name], case.assignment) for name in PAPER}
     for planner in planners.values():
         warm_up(fleet, planner)
@@ -52,7 +48,7 @@ def time_row(case: MapCase) -> Row:
     return {"planned": planned, MEASURED: measured}
 
 
-def warm_up(fleet: "PlannedFleet", planner: Planner) -> None:
+def warm_up(fleet: PlannedFleet, planner: Planner) -> None:
     """Load machine code and find the distances to all goals."""
     robots = len(fleet.instance.robots)
     fleet.carp(range(robots))
@@ -64,7 +60,7 @@ def warm_up(fleet: "PlannedFleet", planner: Planner) -> None:
         plan_first(fleet, planner, 2)
 
 
-def times_of(fleet: "PlannedFleet", planner: Planner) -> dict[str, int]:
+def times_of(fleet: PlannedFleet, planner: Planner) -> dict[str, int]:
     """The nanoseconds of the k-th robot, by k."""
     robots = len(fleet.instance.robots)
     wanted = [k for k in range(1, robots + 1) if k in (1, robots) or k % STEP == 0]
@@ -84,7 +80,7 @@ def times_of(fleet: "PlannedFleet", planner: Planner) -> dict[str, int]:
     return times
 
 
-def plan_first(fleet: "PlannedFleet", planner: Planner, k: int) -> None:
+def plan_first(fleet: PlannedFleet, planner: Planner, k: int) -> None:
     """Plan the first k robots from scratch."""
     match planner:
         case Shuffled():
@@ -111,7 +107,7 @@ class TimeRow(msgspec.Struct, frozen=True):
     measured: dict[str, dict[int, int]]
 
 
-def time_report(rows: Iterable[Row]) -> ExperimentReport:
+def time_report(rows: Iterable[Row], _robots: int) -> ExperimentReport:
     """A table for the 50th and 100th robot (or half of them and all) beside the paper's."""
     times: dict[tuple[str, int], list[float]] = defaultdict(list)
     for row in rows:

@@ -10,22 +10,24 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache
-from itertools import pairwise, permutations
-from typing import TYPE_CHECKING, Literal
+from itertools import pairwise
+from typing import Literal, NamedTuple
 
+import numpy as np
+
+from carp_experiments.paper import space_time
 from carp_experiments.paper.drawn_maps import SIDE, map_arrays
 from carp_experiments.paper.map_cases import MapCase
 from carp_experiments.paper.quality import ALGORITHMS
+from carp_experiments.paper.space_time import FOR_EVER, HORIZON, NONE, World, lay, total
 from carp_experiments.store import Row
+from carp_optimized.jit.kinds import Ints
 from carp_spec import Neighbourhood
 from carp_spec.permutations import orders, shuffle, splitmix64
+from carproof.generate import Fleet, Grid, grid_instance
 
-if TYPE_CHECKING:
-    from carp_experiments.paper.space_time import World
-    from carp_optimized.jit.kinds import Ints
-    from carproof.generate.options import Distinct
-
-FOR_EVER = -1
+OF_NEIGHBOURS = ("failure", "order", "interval", "divisor", "initial", "rounds")
+"""The answers that concern the neighbourhood planner alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,30 +77,14 @@ class Convention:
     @property
     def name(self) -> str:
         """What differs from carproof's conventions."""
-        named = [
-            (each.name, getattr(self, each.name)) for each in fields(self) if getattr(self, each.name) != each.default
-        ]
-        return (
-            ", ".join(
-                name.replace("_", " ") if value is True else f"{name.replace('_', ' ')} {value}"
-                for name, value in named
-            )
-            or "carproof"
-        )
+        values = [(each.name.replace("_", " "), getattr(self, each.name), each.default) for each in fields(self)]
+        named = [name if value is True else f"{name} {value}" for name, value, usual in values if value != usual]
+        return ", ".join(named) or "carproof"
 
     @property
     def traffic(self) -> "Convention":
-        """The same for the algorithms without neighbours: what concerns these alone is left out."""
-        plain = Convention()
-        return replace(
-            self,
-            failure=plain.failure,
-            order=plain.order,
-            interval=plain.interval,
-            divisor=plain.divisor,
-            initial=plain.initial,
-            rounds=plain.rounds,
-        )
+        """The same for the algorithms without neighbours."""
+        return replace(self, **{name: getattr(Convention(), name) for name in OF_NEIGHBOURS})
 
 
 ALONE = (
@@ -166,14 +152,22 @@ DIVISORS = ("ticks", "difference", "none")
 """In the order of `space_time`."""
 
 PASSES: Mapping[str, int] = {"CARP": 1, "CARP10": 10, "CARP100": 100}
-LISTED = ("Proposed_4", "Proposed_5", "Proposed_6", "Proposed_10")
 PROPOSED: Mapping[str, Neighbourhood] = {
     name: options
     for name, options in ALGORITHMS.items()
-    if name.removesuffix(" + baseline") in LISTED
-    if isinstance(options, Neighbourhood)
+    if isinstance(options, Neighbourhood) and options.fallback is None
 }
 LONGEST_FIRST = "LF"
+
+
+def conventions_row(case: MapCase) -> Row:
+    """The screening."""
+    return row_under(CONVENTIONS, case)
+
+
+def nearest_row(case: MapCase) -> Row:
+    """The conventions that the screening brought nearest."""
+    return row_under(NEAREST, case)
 
 
 def remaining_row(case: MapCase) -> Row:
@@ -204,22 +198,20 @@ def rivals(case: MapCase, convention: Convention) -> Mapping[str, tuple[int, int
     return {**found, LONGEST_FIRST: one_pass(world, longest_first(world))}
 
 
-def longest_first(world: "World") -> Sequence[int]:
+def longest_first(world: World) -> Sequence[int]:
     """The robots with the longest paths first."""
     robots = range(len(world.start))
     return sorted(robots, key=lambda robot: -int(world.steps[world.start[robot], world.goal[robot]]))
 
 
-def one_pass(world: "World", order: Sequence[int]) -> tuple[int, int]:
+def one_pass(world: World, order: Sequence[int]) -> tuple[int, int]:
     """CARP in an order: how many robots it plans before it fails, and their cost."""
-    from carp_experiments.paper.space_time import lay, total  # noqa: PLC0415 - each worker loads it
-
     robots = ints(order)
     planned = int(lay(world, robots, 0))
     return planned, int(total(world, robots[:planned]))
 
 
-def shuffled(world: "World", passes: int, seed: int) -> tuple[int, int]:
+def shuffled(world: World, passes: int, seed: int) -> tuple[int, int]:
     """The best of several passes: one that plans everybody, with the least cost."""
     stream = splitmix64(seed)
     order: Sequence[int] = range(len(world.start))
@@ -239,10 +231,8 @@ def proposed_plans(case: MapCase, convention: Convention) -> Mapping[str, tuple[
     return {name: add_all(world_of(case, convention), convention, options, case) for name, options in PROPOSED.items()}
 
 
-def add_all(world: "World", convention: Convention, options: Neighbourhood, case: MapCase) -> tuple[int, int, int]:
+def add_all(world: World, convention: Convention, options: Neighbourhood, case: MapCase) -> tuple[int, int, int]:
     """Add the robots in turn; how many are planned, their cost, and how often two meet, both 0 if one has no plan."""
-    from carp_experiments.paper.space_time import total  # noqa: PLC0415 - each worker loads it
-
     order: Sequence[int] = []
     for robot in range(case.robots):
         updated = add_robot(world, convention, options, order, robot, splitmix64(case.assignment * 1000 + robot))
@@ -252,7 +242,7 @@ def add_all(world: "World", convention: Convention, options: Neighbourhood, case
     return len(order), int(total(world, ints(order))), meetings_of(world, order)
 
 
-def meetings_of(world: "World", order: Sequence[int]) -> int:
+def meetings_of(world: World, order: Sequence[int]) -> int:
     """How often two robots are in one cell until they have arrived, or swap places."""
     places: Counter[tuple[int, int]] = Counter()
     moves = set()
@@ -265,17 +255,16 @@ def meetings_of(world: "World", order: Sequence[int]) -> int:
     return swaps + sum(count - 1 for count in places.values())
 
 
-@dataclass(frozen=True, slots=True)
-class Held:
-    """Plans set aside: their cost, their order, and copies of the arrays that hold them."""
+class Held(NamedTuple):
+    """Plans set aside: their cost, their order, and a world that holds them."""
 
     cost: int
     order: Sequence[int]
-    arrays: tuple["Ints", "Ints", "Ints"]
+    plans: World
 
 
 def add_robot(
-    world: "World",
+    world: World,
     convention: Convention,
     options: Neighbourhood,
     order: Sequence[int],
@@ -283,12 +272,13 @@ def add_robot(
     stream: Iterator[int],
 ) -> Sequence[int] | None:
     """Algorithm 1: the order of planning afterwards, with the plans in the world; `None` if there is no candidate."""
-    from carp_experiments.paper import space_time  # noqa: PLC0415 - each worker loads it
-
-    best = baseline(world, order, robot) if options.baseline or not order else None
+    best = None
+    everybody = [*order, robot]
+    if (options.baseline or not order) and lay(world, ints(everybody), len(order)) == len(everybody):
+        best = held(world, everybody)
     if not new_trajectory(world, convention, order, robot):  # line 2
         return None
-    trajectories = world._replace(path=world.path.copy(), entered=world.entered.copy(), arrival=world.arrival.copy())
+    trajectories = copied(world)
     outside, members, planned = [*order], [robot], len(order)
     rounds = 1 if convention.rounds == "first" else options.m - 1
     for _ in range(min(rounds, len(order))):
@@ -303,114 +293,86 @@ def add_robot(
             space_time.lay_keeping(world, ints(outside), first)
             planned = len(outside)
         else:
-            planned = int(space_time.lay(world, ints(outside), first))
+            planned = int(lay(world, ints(outside), first))
         copy_plans(world, trajectories, outside[first:planned])
         if planned < len(outside) and convention.failure == "stop":
             break
         # lines 11 to 16: the best order of the neighbourhood
         last = best_members(world, members, options, stream) if planned == len(outside) else []
         if last:
-            space_time.lay(world, ints([*outside, *last]), len(outside))
+            lay(world, ints([*outside, *last]), len(outside))
             copy_plans(world, trajectories, last)
-            best = cheaper(best, held(world, [*outside, *last]))
+            found = held(world, [*outside, *last])
+            best = found if best is None or found.cost < best.cost else best
     if best is None:  # line 17
         return None
-    put_back(world, best)
-    return best.order if convention.order == "appended" else [*order, robot]
+    copy_plans(best.plans, world, best.order)
+    return best.order if convention.order == "appended" else everybody
 
 
-def baseline(world: "World", order: Sequence[int], robot: int) -> Held | None:
-    """All plans as they are, and the new robot's beside them."""
-    from carp_experiments.paper.space_time import lay  # noqa: PLC0415 - each worker loads it
-
-    everybody = [*order, robot]
-    return held(world, everybody) if lay(world, ints(everybody), len(order)) == len(everybody) else None
-
-
-def new_trajectory(world: "World", convention: Convention, order: Sequence[int], robot: int) -> bool:
+def new_trajectory(world: World, convention: Convention, order: Sequence[int], robot: int) -> bool:
     """Make the new robot's first trajectory its plan in the world; whether it has one."""
-    from carp_experiments.paper.space_time import lay  # noqa: PLC0415 - each worker loads it
-
     if convention.initial == "planned" and lay(world, ints([*order, robot]), len(order)) > len(order):
         return True
     return bool(lay(world, ints([robot]), 0))
 
 
-def best_members(
-    world: "World", members: Sequence[int], options: Neighbourhood, stream: Iterator[int]
-) -> Sequence[int]:
+def best_members(world: World, members: Sequence[int], options: Neighbourhood, stream: Iterator[int]) -> Sequence[int]:
     """The neighbourhood in its best order, empty if it cannot be planned in any."""
-    from carp_experiments.paper.space_time import NONE, best_order  # noqa: PLC0415 - each worker loads it
-
-    rows = orders_of(len(members), options.sample, stream)
+    rows = np.array(list(orders(len(members), options.sample, stream)), np.int32)
     least = ints([int(world.steps[world.start[each], world.goal[each]]) for each in members])
-    found = int(best_order(world, ints(members), rows, ints([0] * len(members)), least))
+    found = int(space_time.best_order(world, ints(members), rows, ints([0] * len(members)), least))
     return [] if found == NONE else [members[position] for position in rows[found]]
 
 
-def held(world: "World", order: Sequence[int]) -> Held:
+def held(world: World, order: Sequence[int]) -> Held:
     """The plans of these robots, set aside."""
-    from carp_experiments.paper.space_time import total  # noqa: PLC0415 - each worker loads it
-
-    arrays = world.path.copy(), world.entered.copy(), world.arrival.copy()
-    return Held(int(total(world, ints(order))), order, arrays)
+    return Held(int(total(world, ints(order))), order, copied(world))
 
 
-def cheaper(best: Held | None, other: Held) -> Held:
-    """Line 14: the other if it costs less."""
-    return other if best is None or other.cost < best.cost else best
+def copied(world: World) -> World:
+    """A world with plans of its own."""
+    return world._replace(path=world.path.copy(), entered=world.entered.copy(), arrival=world.arrival.copy())
 
 
-def put_back(world: "World", plans: Held) -> None:
-    """Make these plans those of the world."""
-    for array, kept in zip((world.path, world.entered, world.arrival), plans.arrays, strict=True):
-        array[:] = kept
+def copy_plans(source: World, target: World, robots: Sequence[int]) -> None:
+    """Give these robots the plans that they have in another world."""
+    for robot in robots:
+        target.path[robot] = source.path[robot]
+        target.entered[robot] = source.entered[robot]
+        target.arrival[robot] = source.arrival[robot]
 
 
-def ints(numbers: Sequence[int]) -> "Ints":
+def ints(numbers: Sequence[int]) -> Ints:
     """An array of int32."""
-    import numpy as np  # noqa: PLC0415 - each worker loads it
-
     return np.array(numbers, np.int32)
 
 
-def copy_plans(world: "World", trajectories: "World", robots: Sequence[int]) -> None:
-    """Make plans trajectories."""
-    for robot in robots:
-        trajectories.path[robot] = world.path[robot]
-        trajectories.entered[robot] = world.entered[robot]
-        trajectories.arrival[robot] = world.arrival[robot]
-
-
-def orders_of(size: int, sample: int | None, stream: Iterator[int]) -> "Ints":
-    """The orders of a neighbourhood, int32 (orders, size), rising."""
-    import numpy as np  # noqa: PLC0415 - each worker loads it
-
-    if sample is None:
-        return every_order(size)
-    return np.array(list(orders(size, sample, stream)), np.int32)
-
-
-@cache
-def every_order(size: int) -> "Ints":
-    """All orders of that many."""
-    import numpy as np  # noqa: PLC0415 - each worker loads it
-
-    return np.array(list(permutations(range(size))), np.int32)
-
-
-def world_of(case: MapCase, convention: Convention) -> "World":
+def world_of(case: MapCase, convention: Convention) -> World:
     """The map and the robots of a case, without plans."""
-    import numpy as np  # noqa: PLC0415 - each worker loads it
-
-    from carp_experiments.paper.space_time import new_world  # noqa: PLC0415
-
     neighbours, apart = map_arrays(case.map, convention.tree, convention.map_seed)
     robots = np.array(drawn_robots(case, convention), np.int32)
-    return new_world(
-        neighbours,
-        apart,
-        robots,
+    start, goal, release = (np.ascontiguousarray(column) for column in robots.T)
+    cells, nodes = len(neighbours), HORIZON * len(neighbours)
+    steps = np.full((cells, cells), NONE, np.int32)
+    space_time.fill_steps(neighbours, steps, np.zeros(cells, np.int32))
+    return World(
+        neighbours=neighbours,
+        steps=steps,
+        apart=apart,
+        start=start,
+        goal=goal,
+        release=release,
+        occupant=np.full((HORIZON, cells), NONE, np.int32),
+        path=np.zeros((case.robots, HORIZON), np.int32),
+        entered=np.zeros(case.robots, np.int32),
+        arrival=np.full(case.robots, NONE, np.int32),
+        seen=np.zeros(nodes, np.int32),
+        link=np.zeros(nodes, np.int32),
+        came=np.zeros(nodes, np.int32),
+        head=np.zeros(HORIZON + 1, np.int32),
+        tail=np.zeros(HORIZON + 1, np.int32),
+        stamp=np.zeros(1, np.int32),
         stay=convention.stay,
         swaps=convention.swaps,
         following=convention.following,
@@ -422,10 +384,11 @@ def world_of(case: MapCase, convention: Convention) -> "World":
 
 def drawn_robots(case: MapCase, convention: Convention) -> list[tuple[int, int, int]]:
     """Start, goal and release of each robot."""
-    from carproof.generate import Fleet, Grid, grid_instance  # noqa: PLC0415 - each worker loads it
-
-    distinct: Distinct = "none" if convention.repeated else "starts" if convention.goals_repeated else "both"
-    fleet = Fleet(robots=case.robots, seed=case.assignment, distinct=distinct)
+    fleet = Fleet(
+        robots=case.robots,
+        seed=case.assignment,
+        distinct="none" if convention.repeated else "starts" if convention.goals_repeated else "both",
+    )
     instance = grid_instance(Grid(SIDE, SIDE), fleet)
     index = instance.graph.index
     releases = range(case.robots) if convention.spread else [0] * case.robots

@@ -3,22 +3,20 @@
 from collections.abc import Iterator, Sequence
 from functools import cache
 from math import isqrt
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from carp_experiments.paper.map_cases import FULL_MAP
+from carp_optimized.jit.kinds import Ints
 from carp_spec.permutations import shuffle, splitmix64
-
-if TYPE_CHECKING:
-    from carp_optimized.jit.kinds import Ints
+from carproof.generate import Grid, grid_instance
 
 SIDE = 20
 
 
 @cache
-def map_arrays(map: int, tree: str, seed: int) -> tuple["Ints", "Ints"]:
+def map_arrays(map: int, tree: str, seed: int) -> tuple[Ints, Ints]:
     """The neighbours of each cell, int32 (cells, 4), and the distances of all pairs times 2^16, int64."""
-    import numpy as np  # noqa: PLC0415 - each worker loads it
-
     cells = [(number % SIDE, number // SIDE) for number in range(SIDE * SIDE)]
     neighbours = np.full((len(cells), 4), -1, np.int32)
     used = [0] * len(cells)
@@ -32,8 +30,6 @@ def map_arrays(map: int, tree: str, seed: int) -> tuple["Ints", "Ints"]:
 
 def map_edges(map: int, tree: str, seed: int) -> list[tuple[int, int]]:
     """The edges of a map, between indices of cells."""
-    from carproof.generate import Grid, grid_instance  # noqa: PLC0415 - each worker loads it
-
     if tree == "Kruskal":
         graph = grid_instance(Grid(SIDE, SIDE, map, seed)).graph
         return [(graph.index[source], graph.index[target]) for source, target in graph.edges]

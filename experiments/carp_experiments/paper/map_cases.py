@@ -3,17 +3,14 @@
 from collections import defaultdict
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from typing import Protocol, TypeVar
 
 import msgspec
 
 from carp_experiments.paper.sorting import sorting_instance
 from carp_experiments.store import Row
 from carp_spec import Instance
-
-if TYPE_CHECKING:
-    from carp_optimized.fleet import PlannedFleet
-    from carproof.generate import Fleet
+from carproof.generate import Fleet, Grid, Warehouse, grid_instance, warehouse_instance
 
 ROBOTS = 100
 TENTH_MAP = 10
@@ -59,28 +56,17 @@ class MapCase:
 
 def instance_of(case: MapCase) -> Instance:
     """The map with the robots; raises `Refusal` where they have no place on it."""
-    from carproof.generate import Fleet  # noqa: PLC0415 - each worker loads it
-
     fleet = Fleet(robots=case.robots, seed=case.assignment)
     return map_instance(case.map, replace(fleet, distinct="starts") if case.map > FULL_MAP else fleet)
 
 
-def map_instance(map: int, fleet: "Fleet") -> Instance:
+def map_instance(map: int, fleet: Fleet) -> Instance:
     """A map, the warehouse or the sorting centre with a fleet; raises `Refusal` where it has no place on it."""
-    from carproof.generate import Grid, Warehouse, grid_instance, warehouse_instance  # noqa: PLC0415
-
     if map == WAREHOUSE:
         return warehouse_instance(Warehouse(stations=STATIONS), fleet)
     if map == SORTING:
         return sorting_instance(fleet)
     return grid_instance(Grid(map=map), fleet)
-
-
-def fleet_of(case: MapCase) -> "PlannedFleet":
-    """A fleet of these robots without plans."""
-    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - each worker loads it
-
-    return PlannedFleet(instance_of(case))
 
 
 def rows_by_map(rows: Iterable[Row], shape: type[R]) -> dict[int, list[R]]:

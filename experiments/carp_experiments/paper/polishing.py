@@ -12,11 +12,13 @@ from time import process_time_ns
 
 import msgspec
 
+import carp_optimized as engine
 from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, instance_of, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
 from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
+from carp_optimum.bound import lower_bound
 from carp_spec import Instance, RobotId, Solution, total_cost
 from carp_verify.bound.rules import require_kept
 
@@ -42,9 +44,6 @@ def polish_row(case: MapCase) -> Row:
     Also the robots that the longest polish leaves unplanned, and the processor time of the bound, and of a
     polish, in nanoseconds.
     """
-    import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
-    from carp_optimum.bound import lower_bound  # noqa: PLC0415
-
     instance = instance_of(case)
     results: dict[str, tuple[int, int]] = {}
     left: dict[str, Sequence[RobotId]] = {}
@@ -79,8 +78,6 @@ def polish_to(
 
     The numbers rise, and are multiples of the engine's rounds in one compiled call.
     """
-    import carp_optimized as engine  # noqa: PLC0415
-
     at = [reached(instance, solution)] * (len(rounds) + 1)
 
     def keep(played: int, unplanned: int, total: int) -> None:

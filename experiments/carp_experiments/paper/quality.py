@@ -7,17 +7,14 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from statistics import fmean
-from typing import TYPE_CHECKING
 
 import msgspec
 
-from carp_experiments.paper.map_cases import ROBOTS, MapCase, fleet_of, rows_by_map
+from carp_experiments.paper.map_cases import ROBOTS, MapCase, instance_of, rows_by_map
 from carp_experiments.statistics import Interval, mean_interval, proportion_interval
 from carp_experiments.store import Row
+from carp_optimized.fleet import PlannedFleet
 from carp_spec import Carp, LongestFirst, Neighbourhood, Planner, Shuffled, total_cost
-
-if TYPE_CHECKING:
-    from carp_optimized.fleet import PlannedFleet
 
 ALGORITHMS: Mapping[str, Planner] = {
     "CARP": Carp(),
@@ -44,7 +41,7 @@ def quality_row(case: MapCase) -> Row:
     An algorithm that adds robots one by one stops at the first that stays unplanned, because the assignment is a
     failure then.
     """
-    fleet = fleet_of(case)
+    fleet = PlannedFleet(instance_of(case))
     results: dict[str, tuple[int, int]] = {}
     for name, planner in ALGORITHMS.items():
         if name not in BEFORE_FALLBACK:
@@ -56,7 +53,7 @@ def quality_row(case: MapCase) -> Row:
     return {"shortest": sum(fleet.ticks_to_goal(robot) for robot in range(case.robots)), "results": results}
 
 
-def plan_all(fleet: "PlannedFleet", planner: Planner) -> None:
+def plan_all(fleet: PlannedFleet, planner: Planner) -> None:
     """Plan the fleet as `carp_optimized.plan` does, up to the first robot that cannot be added."""
     everyone = range(len(fleet.instance.robots))
     match planner:
@@ -71,7 +68,7 @@ def plan_all(fleet: "PlannedFleet", planner: Planner) -> None:
             fleet.carp(everyone)
 
 
-def add_until_failure(fleet: "PlannedFleet", planner: Planner, first: int) -> None:
+def add_until_failure(fleet: PlannedFleet, planner: Planner, first: int) -> None:
     """Add the robots from the first on, until one stays unplanned."""
     assert isinstance(planner, Neighbourhood)  # noqa: S101 - a promise of ours
     for robot in range(first, len(fleet.instance.robots)):
@@ -79,7 +76,7 @@ def add_until_failure(fleet: "PlannedFleet", planner: Planner, first: int) -> No
             return
 
 
-def outcome(fleet: "PlannedFleet") -> tuple[int, int]:
+def outcome(fleet: PlannedFleet) -> tuple[int, int]:
     """The number of planned robots, and the total cost of their plans."""
     return len(fleet.order), total_cost(fleet.instance, fleet.plans)
 

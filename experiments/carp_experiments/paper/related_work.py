@@ -11,11 +11,12 @@ from itertools import takewhile
 
 import msgspec
 
-from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, fleet_of, rows_by_map, shown_maps
+from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, instance_of, rows_by_map, shown_maps
 from carp_experiments.paper.quality import plan_all
 from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.statistics import Interval, mean_interval, proportion_interval
 from carp_experiments.store import Row
+from carp_optimized.fleet import PlannedFleet
 from carp_spec import FixedPaths, Instance, LongestFirst, Plan, plan_cost
 
 FIXED: Mapping[str, FixedPaths] = {
@@ -36,7 +37,7 @@ def related_row(case: MapCase) -> Row:
 
     Robots are planned in the order given, but by LF and greedy.
     """
-    fleet = fleet_of(case)
+    fleet = PlannedFleet(instance_of(case))
     plans: dict[str, Sequence[Plan]] = {}
     everyone = range(case.robots)
     paths = {FIXED[name].paths: [fleet.paths(robot, FIXED[name]) for robot in everyone] for name in CHOSEN}

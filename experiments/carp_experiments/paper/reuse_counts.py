@@ -7,10 +7,11 @@ from math import factorial
 
 import msgspec
 
-from carp_experiments.paper.map_cases import MapCase, fleet_of
+from carp_experiments.paper.map_cases import MapCase, instance_of
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
+from carp_optimized.fleet import PlannedFleet
 from carp_optimized.neighbourhood.reuse import Reuse
 from carp_spec import Neighbourhood
 
@@ -35,7 +36,7 @@ def reuse_row(case: MapCase) -> Row:
     asked: dict[str, dict[str, int]] = {}
     avoided: dict[str, dict[str, int]] = {}
     for setting, reuse in SETTINGS.items():
-        fleet = fleet_of(case)
+        fleet = PlannedFleet(instance_of(case))
         fleet.reuse = reuse
         asked[setting] = {}
         for m in (*SIZES, SAMPLED):

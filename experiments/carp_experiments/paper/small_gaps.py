@@ -8,13 +8,18 @@ from dataclasses import dataclass
 
 import msgspec
 
+import carp_optimized as engine
 from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, rows_by_map, shown_maps
 from carp_experiments.paper.quality import ALGORITHMS, outcome, plan_all, seeded
 from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
+from carp_optimized.fleet import PlannedFleet
+from carp_optimum.bound import lower_bound
+from carp_optimum.optimum import optimum
 from carp_spec import Greedy, Instance, Planner, total_cost
 from carp_verify.bound.rules import require_kept
+from carproof.generate import Fleet, Grid, grid_instance
 
 SIDE = 8
 LIMIT_IN_SECONDS = 60
@@ -36,11 +41,6 @@ def gap_row(case: MapCase) -> Row:
     Each assignment has a small map of its own. Only a search that takes nearly a minute can end differently on another
     machine.
     """
-    import carp_optimized as engine  # noqa: PLC0415 - each worker loads it
-    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415
-    from carp_optimum.bound import lower_bound  # noqa: PLC0415
-    from carp_optimum.optimum import optimum  # noqa: PLC0415
-
     instance = small_instance(case)
     fleet = PlannedFleet(instance)
     results = {}
@@ -69,8 +69,6 @@ def gap_row(case: MapCase) -> Row:
 
 def small_instance(case: MapCase) -> Instance:
     """The map of an assignment with its robots."""
-    from carproof.generate import Fleet, Grid, grid_instance  # noqa: PLC0415 - each worker loads it
-
     grid = Grid(SIDE, SIDE, case.map, map_seed=case.assignment)
     return grid_instance(grid, Fleet(robots=case.robots, seed=case.assignment))
 

@@ -6,12 +6,10 @@ are taken up. Between columns of chutes two lanes run the same way, and from pai
 
 from collections.abc import Iterator
 from itertools import product
-from typing import TYPE_CHECKING
 
 from carp_spec import Instance, Resource, ResourceGraph
-
-if TYPE_CHECKING:
-    from carproof.generate import Fleet
+from carproof.generate import Fleet
+from carproof.generate.fleet import random_robots
 
 WIDTH, HEIGHT = 77, 37
 APART, CHUTES = 3, 2
@@ -19,10 +17,8 @@ APART, CHUTES = 3, 2
 Cell = tuple[int, int]
 
 
-def sorting_instance(fleet: "Fleet") -> Instance:
+def sorting_instance(fleet: Fleet) -> Instance:
     """Robots that start at stations, each with a goal beside a chute."""
-    from carproof.generate.fleet import random_robots  # noqa: PLC0415 - each worker loads it
-
     cells = [(x, y) for y, x in product(range(HEIGHT), range(WIDTH)) if not is_chute(x, y)]
     edges = [(name(cell), name(to)) for cell in cells for to in moves(*cell)]
     stations = [name((x, y)) for x, y in cells if y in {0, HEIGHT - 1} and x % APART == CHUTES]

@@ -6,8 +6,6 @@ Every cell holds one robot, and every move takes a tick. Robots are planned one 
 
 from typing import NamedTuple
 
-import numpy as np
-
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints
 
@@ -48,50 +46,6 @@ class World(NamedTuple):
     shallow: bool
     late: bool
     moves_alone: bool
-
-
-def new_world(  # noqa: PLR0913 - the rules by their names
-    neighbours: Ints,
-    apart: Ints,
-    robots: Ints,
-    *,
-    stay: int,
-    swaps: bool,
-    following: bool,
-    shallow: bool,
-    late: bool,
-    moves_alone: bool,
-) -> World:
-    """A map without plans; `robots` int32 (robots, 3) has the start, goal and release of each."""
-    cells, count = len(neighbours), len(robots)
-    steps = np.full((cells, cells), NONE, np.int32)
-    fill_steps(neighbours, steps, np.zeros(cells, np.int32))
-    start, goal, release = (np.ascontiguousarray(column) for column in robots.T)
-    nodes = HORIZON * cells
-    return World(
-        neighbours,
-        steps,
-        apart,
-        start,
-        goal,
-        release,
-        np.full((HORIZON, cells), NONE, np.int32),
-        np.zeros((count, HORIZON), np.int32),
-        np.zeros(count, np.int32),
-        np.full(count, NONE, np.int32),
-        np.zeros(nodes, np.int32),
-        np.zeros(nodes, np.int32),
-        np.zeros(nodes, np.int32),
-        np.zeros(HORIZON + 1, np.int32),
-        np.zeros(HORIZON + 1, np.int32),
-        np.zeros(1, np.int32),
-        stay,
-        swaps,
-        following,
-        shallow,
-        late,
-        moves_alone,
-    )
 
 
 @entry
