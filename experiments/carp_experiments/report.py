@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
 import msgspec
 
@@ -11,6 +11,8 @@ from carp_experiments.statistics import Interval
 from carproof.markdown import markdown_table
 
 T = TypeVar("T")
+Point: TypeAlias = tuple[int, Interval | None]
+Lines: TypeAlias = Mapping[str, Sequence[Point]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +42,14 @@ def table_of(
     return Table(name, title, tuple(cells), lines, tuple(cells)[names:])
 
 
+def table_by_map(name: str, title: str, head: str, cells: Mapping[tuple[str, int], str]) -> Table:
+    """A table of the cells, with a line for each name and a column for each map."""
+    names, maps = (dict.fromkeys(column) for column in zip(*cells, strict=True))
+    columns = (head, *(f"map {map}" for map in maps))
+    rows = tuple((each, *(cells[each, map] for map in maps)) for each in names)
+    return Table(name, title, columns, rows, columns[1:])
+
+
 @dataclass(frozen=True, slots=True)
 class Figure:
     """Lines over numbers, each point with its 95 % interval; a point without a value is left out.
@@ -50,10 +60,18 @@ class Figure:
     name: str
     title: str
     axes: tuple[str, str]
-    lines: Mapping[str, Sequence[tuple[int, Interval | None]]]
+    lines: Lines
     logarithmic: bool = False
     papers: Mapping[str, Sequence[tuple[int, float]]] = field(default_factory=dict)
     cited: str = ""
+
+
+def lines_of(summary: Iterable[T], line: Callable[[T], str], point: Callable[[T], Point]) -> Lines:
+    """The points of each line, both in the order in which they come."""
+    lines: dict[str, list[Point]] = {}
+    for each in summary:
+        lines.setdefault(line(each), []).append(point(each))
+    return lines
 
 
 @dataclass(frozen=True, slots=True)

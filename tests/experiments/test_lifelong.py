@@ -28,7 +28,7 @@ def test_each_robot_picks_elsewhere_than_it_drops() -> None:
 
 
 def test_each_planner_serves_all_orders_at_each_rate() -> None:
-    row = {"map": 20, **lifelong_row(CASE)}
+    row = CASE.run()
     summary = msgspec.convert(lifelong_report([row], 8).summary, tuple[LifelongOf, ...])
     assert [(each.rate, each.planner) for each in summary] == [(rate, name) for rate in RATES for name in PLANNERS]
     assert all(each.taken.estimate > SERVICE for each in summary)

@@ -11,7 +11,7 @@ import msgspec
 import carp_optimized as engine
 from carp_experiments.paper.map_cases import FULL_MAP, MapCase, instance_of, place_name, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
-from carp_experiments.report import ExperimentReport, Figure, Table, table_of
+from carp_experiments.report import ExperimentReport, Figure, lines_of, table_of
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_spec import Instance, Solution, violations_of
@@ -73,7 +73,7 @@ def execution_row(case: MapCase) -> Row:
             for driver in DRIVERS
         }
         found[name] = Driven(untangled.rounds, bool(untangled.rotation), drivers)
-    return {"planners": msgspec.to_builtins(found)}
+    return {"planners": found}
 
 
 def driven(instance: Instance, solution: Solution, driver: Driver, share: int, seed: int) -> Executed:
@@ -116,35 +116,26 @@ class DriverOf:
 def execution_report(rows: Iterable[Row], _robots: int) -> ExperimentReport:
     """A table of each map."""
     summary = tuple(
-        driver_of(map, planner, driver, place, [row.planners[planner].drivers[driver][place] for row in each])
-        for map, each in rows_by_map(rows, ExecutionRow).items()
+        DriverOf(
+            map,
+            planner,
+            driver,
+            share,
+            len(found),
+            mean_interval([each.late / max(1, each.arrived) for each in found]),
+            mean_interval([each.worst for each in found]),
+            mean_interval([100 * each.arrived / max(1, each.last) for each in found]),
+            mean_interval([each.collisions for each in found]),
+            sum(each.standing for each in found),
+            mean_interval([each.switches for each in found]),
+        )
+        for map, stored in rows_by_map(rows, ExecutionRow).items()
         for planner in PLANNERS
         for driver in DRIVERS
-        for place in range(len(PER_CENT))
+        for place, share in enumerate(PER_CENT)
+        if (found := [row.planners[planner].drivers[driver][place] for row in stored])
     )
-    return ExperimentReport(summary, execution_tables(summary))
-
-
-def driver_of(map: int, planner: str, driver: str, place: int, found: Sequence[Executed]) -> DriverOf:
-    """The means over some executions."""
-    return DriverOf(
-        map,
-        planner,
-        driver,
-        PER_CENT[place],
-        len(found),
-        mean_interval([each.late / max(1, each.arrived) for each in found]),
-        mean_interval([each.worst for each in found]),
-        mean_interval([100 * each.arrived / max(1, each.last) for each in found]),
-        mean_interval([each.collisions for each in found]),
-        sum(each.standing for each in found),
-        mean_interval([each.switches for each in found]),
-    )
-
-
-def execution_tables(summary: Sequence[DriverOf]) -> tuple[Table, ...]:
-    """A table of each map."""
-    return tuple(
+    tables = tuple(
         table_of(
             f"execution-{map}",
             f"On {place_name(map)}, means of {executions} executions with 95 % intervals: the ticks by which robots "
@@ -165,19 +156,17 @@ def execution_tables(summary: Sequence[DriverOf]) -> tuple[Table, ...]:
         )
         for map, executions in sorted({(each.map, each.executions) for each in summary})
     )
+    return ExperimentReport(summary, tables)
 
 
 def execution_figures(summary: Sequence[DriverOf]) -> tuple[Figure, ...]:
     """Lateness, throughput and collisions on the full grid, or the last map, by the share of delayed visits."""
     maps = {each.map for each in summary}
     map = FULL_MAP if FULL_MAP in maps else max(maps)
-    lines: dict[str, list[DriverOf]] = {}
-    for each in summary:
-        if each.map == map:
-            lines.setdefault(f"{each.planner} + {each.driver}", []).append(each)
+    here = [each for each in summary if each.map == map]
 
     def figure(name: str, title: str, unit: str, value: Callable[[DriverOf], Interval]) -> Figure:
-        drawn = {line: [(each.share, value(each)) for each in points] for line, points in lines.items()}
+        drawn = lines_of(here, lambda each: f"{each.planner} + {each.driver}", lambda each: (each.share, value(each)))
         return Figure(f"execution-{name}", f"{title} on {place_name(map)}", ("delayed visits, per cent", unit), drawn)
 
     return (

@@ -57,7 +57,7 @@ def following_row(case: MapCase) -> Row:
             untangled.extra,
             bool(untangled.rotation),
         )
-    return {"planners": msgspec.to_builtins(found)}
+    return {"planners": found}
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,11 +82,24 @@ class FollowingOf:
 
 def following_report(rows: Iterable[Row], _robots: int) -> ExperimentReport:
     """A table of all maps."""
-    by_map = rows_by_map(rows, FollowingRow)
     summary = tuple(
-        following_of(map, name, [row.planners[name] for row in each])
-        for map, each in by_map.items()
+        FollowingOf(
+            map,
+            name,
+            len(found),
+            (
+                mean_interval([each.unplanned[0] for each in found]),
+                mean_interval([each.unplanned[1] for each in found]),
+            ),
+            mean_interval([100 * (each.totals[1] / (each.totals[0] or 1) - 1) for each in found]),
+            sum(each.rotations > 0 or each.left for each in found),
+            sum(each.left for each in found),
+            mean_interval([each.rotations for each in found]),
+            mean_interval([100 * each.extra / (each.whole or 1) for each in found]),
+        )
+        for map, stored in rows_by_map(rows, FollowingRow).items()
         for name in PLANNERS
+        if (found := [row.planners[name] for row in stored])
     )
     title = (
         "Means with 95 % intervals: robots without a plan with following allowed and forbidden; the excess of the "
@@ -117,19 +130,3 @@ def following_figures(summary: Sequence[FollowingOf]) -> tuple[Figure, ...]:
         lines.setdefault(f"{each.planner} + removed", []).append((each.map, each.extra))
     axes = (MAP_AXIS, "total cost more, per cent")
     return (Figure("following", "The price of plans without rotations", axes, lines),) if lines else ()
-
-
-def following_of(map: int, name: str, found: Sequence[Priced]) -> FollowingOf:
-    """A planner on a map."""
-    above = [100 * (each.totals[1] / (each.totals[0] or 1) - 1) for each in found]
-    return FollowingOf(
-        map,
-        name,
-        len(found),
-        (mean_interval([each.unplanned[0] for each in found]), mean_interval([each.unplanned[1] for each in found])),
-        mean_interval(above),
-        sum(each.rotations > 0 or each.left for each in found),
-        sum(each.left for each in found),
-        mean_interval([each.rotations for each in found]),
-        mean_interval([100 * each.extra / (each.whole or 1) for each in found]),
-    )

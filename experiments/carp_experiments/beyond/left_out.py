@@ -1,13 +1,13 @@
 """Robots that `carproof plan` leaves out, as a user first calls it: before and after its repair."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 import msgspec
 
 import carp_optimized as engine
 from carp_experiments.paper.map_cases import MapCase, instance_of, rows_by_map
-from carp_experiments.report import ExperimentReport, Table
+from carp_experiments.report import ExperimentReport, table_of
 from carp_experiments.store import Row
 from carp_optimized.improve.repair import repair
 from carp_spec import RobotId, total_cost, violations_of
@@ -56,12 +56,12 @@ def left_out_report(rows: Iterable[Row], _robots: int) -> ExperimentReport:
         for row in each
         if row.left
     )
-    columns = ("map", "assignments", "planner", "repaired")
-    table = Table(
-        "left-out",
-        "Assignments with a robot left out by the planner, and after the repair",
-        columns,
-        tuple((str(each.map), str(each.assignments), str(each.before), str(each.after)) for each in maps),
-        columns,
-    )
+    title = "Assignments with a robot left out by the planner, and after the repair"
+    cells: Mapping[str, Callable[[LeftOut], object]] = {
+        "map": lambda each: each.map,
+        "assignments": lambda each: each.assignments,
+        "planner": lambda each: each.before,
+        "repaired": lambda each: each.after,
+    }
+    table = table_of("left-out", title, maps, cells)
     return ExperimentReport(maps, (table,), lines=lines, holds=not lines)

@@ -10,7 +10,7 @@ from time import process_time
 
 import msgspec
 
-from carp_experiments.beyond.streams import TICKS, middle_half, stream_instance
+from carp_experiments.beyond.streams import TICKS, middle_half, stream_instance, throughput_of
 from carp_experiments.paper.map_cases import SORTING, MapCase, place_name, rows_by_map
 from carp_experiments.report import ExperimentReport, table_of
 from carp_experiments.statistics import Interval, mean_interval
@@ -46,7 +46,7 @@ class LifelongRow(msgspec.Struct, frozen=True):
 
 def lifelong_row(case: MapCase) -> Row:
     """The streams of each planner."""
-    return {"planners": {name: [msgspec.to_builtins(served(case, name, rate)) for rate in RATES] for name in PLANNERS}}
+    return {"planners": {name: [served(case, name, rate) for rate in RATES] for name in PLANNERS}}
 
 
 def served(case: MapCase, name: str, rate: int) -> Served:
@@ -81,9 +81,8 @@ def order_instance(case: MapCase, rate: int) -> Instance:
     robots = []
     for robot in instance.robots:
         picks = [goal for goal in dict.fromkeys(goals) if goal != robot.goal]
-        pick = picks[next(stream) % len(picks)] if picks else robot.goal
-        stops = (Stop(pick, SERVICE), Stop(robot.goal)) if picks else robot.stops
-        robots.append(replace(robot, stops=stops))
+        picked = [Stop(picks[next(stream) % len(picks)], SERVICE)] if picks else []
+        robots.append(replace(robot, stops=(*picked, *robot.stops)))
     return replace(instance, robots=tuple(robots))
 
 
@@ -107,10 +106,19 @@ class LifelongOf:
 def lifelong_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
     """A table of all maps."""
     summary = tuple(
-        _mean(map, planner, rate, [row.planners[planner][place] for row in each], robots)
-        for map, each in rows_by_map(rows, LifelongRow).items()
+        LifelongOf(
+            map,
+            planner,
+            rate,
+            len(found),
+            throughput_of([each.half for each in found], robots),
+            mean_interval([each.taken / robots for each in found]),
+            mean_interval([each.microseconds / robots / 1000 for each in found]),
+        )
+        for map, stored in rows_by_map(rows, LifelongRow).items()
         for place, rate in enumerate(RATES)
         for planner in PLANNERS
+        if (found := [row.planners[planner][place] for row in stored])
     )
     title = (
         f"Streams of {robots} pick-and-drop orders, means with 95 % intervals: orders that come in {TICKS} ticks, "
@@ -126,15 +134,3 @@ def lifelong_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
         "ms an order": lambda each: f"{each.milliseconds:.2f}",
     }
     return ExperimentReport(summary, (table_of("lifelong", title, summary, cells, names=3),))
-
-
-def _mean(map: int, planner: str, rate: int, found: list[Served], robots: int) -> LifelongOf:
-    return LifelongOf(
-        map,
-        planner,
-        rate,
-        len(found),
-        mean_interval([TICKS * (3 * robots // 4 - robots // 4) / each.half for each in found]),
-        mean_interval([each.taken / robots for each in found]),
-        mean_interval([each.microseconds / robots / 1000 for each in found]),
-    )

@@ -15,7 +15,7 @@ import msgspec
 
 from carp_experiments.beyond.streams import docked
 from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, rows_by_map
-from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.report import ExperimentReport, Figure, Table, lines_of, table_by_map
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
 from carp_optimized.fleet import PlannedFleet
@@ -205,50 +205,40 @@ def named(m: int) -> str:
 
 def kinds_table(summary: Sequence[Helped]) -> Table:
     """Of M = 4: savings of each kind on each map, and those of polish."""
-    maps = sorted({each.map for each in summary})
-    columns = ("kind", *(f"map {map}" for map in maps))
-    usual = {(each.kind, each.map): each for each in summary if each.m == USUAL}
-    rows = tuple(
-        (
-            f"{kind}: {meaning}",
-            *(f"{usual[kind, map].saved:.1f}; {usual[kind, map].polished:.1f}" for map in maps),
-        )
-        for kind, meaning in KINDS.items()
-    )
+    cells = {
+        (f"{each.kind}: {KINDS[each.kind]}", each.map): f"{each.saved:.1f}; {each.polished:.1f}"
+        for each in summary
+        if each.m == USUAL
+    }
     title = f"Per cent of CARP's total saved by {named(USUAL)}; by polish of CARP's plans in the same processor time"
-    return Table("neighbours", title, columns, rows, columns[1:])
+    return table_by_map("neighbours", title, "kind", cells)
 
 
 def sizes_table(summary: Sequence[Helped]) -> Table:
     """Of the plain kind: savings and time of each M on each map."""
-    maps = sorted({each.map for each in summary})
-    columns = ("M", *(f"map {map}" for map in maps))
-    plain = {(each.m, each.map): each for each in summary if each.kind == PLAIN}
-    rows = tuple(
-        (
-            str(m),
-            *(f"{each.saved:.1f}; {each.polished:.1f}; {each.times:.0f}" for each in (plain[m, map] for map in maps)),
-        )
-        for m in SIZES
-    )
+    cells = {
+        (str(each.m), each.map): f"{each.saved:.1f}; {each.polished:.1f}; {each.times:.0f}"
+        for each in summary
+        if each.kind == PLAIN
+    }
     title = (
         "Plain instances: per cent saved by each M; by polish in the same processor time; that time over the time in "
         "which CARP plans all robots"
     )
-    return Table("neighbours-sizes", title, columns, rows, columns)
+    table = table_by_map("neighbours-sizes", title, "M", cells)
+    return replace(table, numbers=table.columns)
 
 
 def neighbours_figures(summary: Sequence[Helped]) -> tuple[Figure, ...]:
     """Savings by kind, polish beside them, and savings by M with polish beside them."""
     usual = [each for each in summary if each.m == USUAL]
-    saved = {kind: [(each.map, each.saved) for each in usual if each.kind == kind] for kind in KINDS}
-    more = {kind: [(each.map, each.more) for each in usual if each.kind == kind] for kind in KINDS}
+    saved = lines_of(usual, lambda each: each.kind, lambda each: (each.map, each.saved))
+    more = lines_of(usual, lambda each: each.kind, lambda each: (each.map, each.more))
     plain = [each for each in summary if each.kind == PLAIN and each.map in BUDGET_MAPS]
-    by_size = {}
-    for map in sorted({each.map for each in plain}):
-        here = [each for each in plain if each.map == map]
-        by_size[f"map {map} + polish"] = [(each.m, each.polished) for each in here]
-        by_size[f"map {map}"] = [(each.m, each.saved) for each in here]
+    by_size = {
+        **lines_of(plain, lambda each: f"map {each.map}", lambda each: (each.m, each.saved)),
+        **lines_of(plain, lambda each: f"map {each.map} + polish", lambda each: (each.m, each.polished)),
+    }
     by_size = {name: by_size[name] for name in sorted(by_size, key=lambda name: (int(name.split()[1]), name))}
     per_cent = "per cent of CARP's total"
     return (

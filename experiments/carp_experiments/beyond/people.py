@@ -10,7 +10,7 @@ import msgspec
 import carp_optimized as engine
 from carp_experiments.paper.map_cases import MapCase, instance_of, place_name, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
-from carp_experiments.report import ExperimentReport, Figure, table_of
+from carp_experiments.report import ExperimentReport, Figure, lines_of, table_of
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
 from carp_spec import Instance, Plan, RobotId, Solution, plan_cost
@@ -78,7 +78,7 @@ def people_row(case: MapCase) -> Row:
                 pushed,
             )
         )
-    return {"people": msgspec.to_builtins(people), MEASURED: milliseconds}
+    return {"people": people, MEASURED: milliseconds}
 
 
 def travels(solution: Solution, robot: RobotId, now: int) -> bool:
@@ -123,12 +123,11 @@ class PeopleOf:
 
 def people_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
     """A table of all maps."""
-    by_map = rows_by_map(rows, PeopleRow)
     summary = tuple(
         people_of(map, count, enough)
-        for map, each in by_map.items()
+        for map, stored in rows_by_map(rows, PeopleRow).items()
         for count in PEOPLE
-        if (enough := [row for row in each if len(row.people) >= count])
+        if (enough := [row for row in stored if len(row.people) >= count])
     )
     title = (
         f"People among {robots} robots that have plans by {GIVEN}, one each {EVERY} ticks. How many arrive as early as "
@@ -153,9 +152,7 @@ def people_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
 
 def people_figures(summary: Sequence[PeopleOf]) -> tuple[Figure, ...]:
     """The extra cost of robots, by the number of people."""
-    lines: dict[str, list[tuple[int, Interval]]] = {}
-    for each in summary:
-        lines.setdefault(place_name(each.map), []).append((each.count, each.extra))
+    lines = lines_of(summary, lambda each: place_name(each.map), lambda each: (each.count, each.extra))
     return (Figure("people", "Cost of people for the robots", ("people", "ticks more"), lines),)
 
 

@@ -12,7 +12,7 @@ import msgspec
 
 from carp_experiments.paper.map_cases import MapCase, map_instance, place_name, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
-from carp_experiments.report import ExperimentReport, Figure, table_of
+from carp_experiments.report import ExperimentReport, Figure, lines_of, table_of
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_optimized.fleet import PlannedFleet
@@ -46,9 +46,7 @@ class StreamRow(msgspec.Struct, frozen=True):
 
 def stream_row(case: MapCase) -> Row:
     """The streams of each planner."""
-    return {
-        "planners": {name: [msgspec.to_builtins(streamed(case, name, rate)) for rate in RATES] for name in PLANNERS}
-    }
+    return {"planners": {name: [streamed(case, name, rate) for rate in RATES] for name in PLANNERS}}
 
 
 def streamed(case: MapCase, name: str, rate: int) -> Streamed:
@@ -118,10 +116,19 @@ class StreamOf:
 def stream_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
     """A table of all maps."""
     summary = tuple(
-        stream_of(map, planner, rate, [row.planners[planner][place] for row in each], robots)
-        for map, each in rows_by_map(rows, StreamRow).items()
+        StreamOf(
+            map,
+            planner,
+            rate,
+            len(found),
+            throughput_of([each.half for each in found], robots),
+            mean_interval([each.taken / robots for each in found]),
+            mean_interval([(each.taken - each.shortest) / robots for each in found]),
+        )
+        for map, stored in rows_by_map(rows, StreamRow).items()
         for planner in PLANNERS
         for place, rate in enumerate(RATES)
+        if (found := [row.planners[planner][place] for row in stored])
     )
     title = (
         f"Streams of {robots} robots, means with 95 % intervals: arrivals in {TICKS} ticks, robots that reach their "
@@ -138,26 +145,19 @@ def stream_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
     return ExperimentReport(summary, (table_of("stream", title, summary, cells, names=2),))
 
 
-def stream_of(map: int, planner: str, rate: int, found: Sequence[Streamed], robots: int) -> StreamOf:
-    """The means over some streams."""
-    return StreamOf(
-        map,
-        planner,
-        rate,
-        len(found),
-        mean_interval([TICKS * (3 * robots // 4 - robots // 4) / each.half for each in found]),
-        mean_interval([each.taken / robots for each in found]),
-        mean_interval([(each.taken - each.shortest) / robots for each in found]),
-    )
+def throughput_of(halves: Sequence[int], robots: int) -> Interval:
+    """How many robots are done in `TICKS`, by the ticks in which the middle half of each stream is."""
+    return mean_interval([TICKS * (3 * robots // 4 - robots // 4) / half for half in halves])
 
 
 def stream_figures(summary: Sequence[StreamOf]) -> tuple[Figure, ...]:
     """Throughput and waiting by the rate, a line for each planner and map."""
-    lines: dict[str, list[StreamOf]] = {}
-    for each in summary:
-        lines.setdefault(f"{each.planner.partition(' ')[0]} + {place_name(each.map)}", []).append(each)
-    throughput = {name: [(each.rate, each.throughput) for each in line] for name, line in lines.items()}
-    waited = {name: [(each.rate, each.waited) for each in line] for name, line in lines.items()}
+
+    def line(each: StreamOf) -> str:
+        return f"{each.planner.partition(' ')[0]} + {place_name(each.map)}"
+
+    throughput = lines_of(summary, line, lambda each: (each.rate, each.throughput))
+    waited = lines_of(summary, line, lambda each: (each.rate, each.waited))
     axis = f"arrivals in {TICKS} ticks"
     return (
         Figure("stream-throughput", "Throughput of a stream", (axis, f"at goals in {TICKS} ticks"), throughput),

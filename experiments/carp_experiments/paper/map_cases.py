@@ -51,7 +51,7 @@ class MapCase:
 
     def run(self) -> Row:
         """The row that is computed, with map and assignment."""
-        return {"map": self.map, "assignment": self.assignment, **self.compute(self)}
+        return {"map": self.map, "assignment": self.assignment, **msgspec.to_builtins(self.compute(self))}
 
 
 def instance_of(case: MapCase) -> Instance:

@@ -15,7 +15,7 @@ import msgspec
 import carp_optimized as engine
 from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, instance_of, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
-from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.report import ExperimentReport, Figure, Table, lines_of
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
 from carp_optimum.bound import lower_bound
@@ -250,12 +250,12 @@ def polish_figures(summary: PolishSummary) -> tuple[Figure, ...]:
     The optimum lies between the methods and the bound. What more rounds add, or a polish of other plans, is drawn as
     differences.
     """
-    by_method = {name: [each for each in summary.methods if each.method == name] for name in METHODS}
-    apart = [name for name in METHODS if name not in ALIKE]
-    gaps = {name: [(each.map, each.gap) for each in by_method[name]] for name in apart}
-    totals = {name: [(each.map, each.above) for each in by_method[name]] for name in apart}
-    beyond = {name: [(each.map, each.beyond) for each in by_method[name]] for name in ALIKE}
-    totals["lower bound"] = [(each.map, each.above) for each in summary.floors]
+    apart = [each for each in summary.methods if each.method not in ALIKE]
+    alike = [each for each in summary.methods if each.method in ALIKE]
+    gaps = lines_of(apart, lambda each: each.method, lambda each: (each.map, each.gap))
+    above = lines_of(apart, lambda each: each.method, lambda each: (each.map, each.above))
+    beyond = lines_of(alike, lambda each: each.method, lambda each: (each.map, each.beyond))
+    totals = {**above, "lower bound": [(each.map, each.above) for each in summary.floors]}
     axes = (MAP_AXIS, "per cent")
     return (
         Figure("polish", "Total above the lower bound", axes, gaps, logarithmic=True),

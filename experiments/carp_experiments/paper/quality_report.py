@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Mapping, Sequence
 
 from carp_experiments.paper.map_cases import FULL_MAP, MAP_AXIS, ROBOTS, TENTH_MAP, shown_maps
-from carp_experiments.paper.quality import ALGORITHMS, QualitySummary, Summary, summarise
-from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.paper.quality import ALGORITHMS, QualitySummary, summarise
+from carp_experiments.report import ExperimentReport, Figure, lines_of, table_by_map
 from carp_experiments.statistics import Interval
 from carp_experiments.store import Row
 
@@ -20,22 +20,21 @@ FEWEST_SHOWN = 4  # a mean over less than a quarter of the assignments is no poi
 def quality_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
     """Failure rates in per cent, and mean totals over the assignments that did not fail, on some of the maps."""
     summary = summarise(rows, robots)
-    by_place = {(each.algorithm, each.map): each for each in summary.algorithms}
     maps = shown_maps(each.map for each in summary.algorithms)
-    columns = ("algorithm", *(f"map {map}" for map in maps))
-    rates = tuple((name, *(_percent(by_place[name, map].failure_rate) for map in maps)) for name in ALGORITHMS)
-    totals = tuple((name, *(_mean(by_place[name, map].total) for map in maps)) for name in ALGORITHMS)
-    tables = (
-        Table("quality-failures", "Failure rate in per cent, with its 95 % interval", columns, rates, columns[1:]),
-        Table(
-            "quality-totals",
-            "Mean total cost over the assignments that did not fail, with its 95 % interval",
-            columns,
-            totals,
-            columns[1:],
-        ),
+    shown = [each for each in summary.algorithms if each.map in maps]
+    failures = table_by_map(
+        "quality-failures",
+        "Failure rate in per cent, with its 95 % interval",
+        "algorithm",
+        {(each.algorithm, each.map): _percent(each.failure_rate) for each in shown},
     )
-    return ExperimentReport(summary, tables)
+    totals = table_by_map(
+        "quality-totals",
+        "Mean total cost over the assignments that did not fail, with its 95 % interval",
+        "algorithm",
+        {(each.algorithm, each.map): _mean(each.total) for each in shown},
+    )
+    return ExperimentReport(summary, (failures, totals))
 
 
 def quality_figures(summary: QualitySummary) -> tuple[Figure, ...]:
@@ -44,29 +43,24 @@ def quality_figures(summary: QualitySummary) -> tuple[Figure, ...]:
         name: [
             (each.map, each.saving)
             for each in summary.savings
-            if (each.algorithm, each.rival) == (name, "CARP") and each.cases * FEWEST_SHOWN >= summary.assignments
+            if (each.algorithm, each.rival) == (name, "CARP") and each.map is not None
+            if each.cases * FEWEST_SHOWN >= summary.assignments
         ]
         for name in ALGORITHMS
         if name != "CARP"
     }
-    on_maps = {name: [(map, saved) for map, saved in line if map is not None] for name, line in savings.items()}
-    failures = {name: [(each.map, each.failure_rate) for each in of(summary, name)] for name in ALGORITHMS}
+    failures = lines_of(summary.algorithms, lambda each: each.algorithm, lambda each: (each.map, each.failure_rate))
     return (
         Figure("quality-failures", PAPERS_FAILURES, (MAP_AXIS, "failure rate"), failures),
         Figure(
             "quality-savings",
             "Fewer actions than CARP, where neither fails",
             (MAP_AXIS, "actions"),
-            on_maps,
+            savings,
             papers=PAPERS_SAVINGS if summary.robots == ROBOTS else {},
             cited="(large, hollow: the paper's, in its section IV)",
         ),
     )
-
-
-def of(summary: QualitySummary, name: str) -> list[Summary]:
-    """The summaries of one algorithm, by map."""
-    return [each for each in summary.algorithms if each.algorithm == name]
 
 
 def _percent(rate: Interval) -> str:

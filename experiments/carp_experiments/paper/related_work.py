@@ -13,7 +13,7 @@ import msgspec
 
 from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, instance_of, rows_by_map, shown_maps
 from carp_experiments.paper.quality import plan_all
-from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.report import ExperimentReport, Figure, lines_of, table_by_map
 from carp_experiments.statistics import Interval, mean_interval, proportion_interval
 from carp_experiments.store import Row
 from carp_optimized.fleet import PlannedFleet
@@ -91,40 +91,33 @@ def related_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
     """Tables over some of the maps."""
     by_map = rows_by_map(rows, RelatedRow)
     summary = tuple(related_of(map, name, each) for map, each in by_map.items() for name in METHODS)
-    maps = shown_maps(by_map)
-    by_place = {(each.method, each.map): each for each in summary}
-    columns = ("method", *(f"map {map}" for map in maps))
-    unplanned = [(name, *(f"{by_place[name, map].unplanned:.1f}" for map in maps)) for name in METHODS]
-    above = [(name, *(_compared(by_place[name, map]) for map in maps)) for name in METHODS if name != "CARP"]
-    tables = (
-        Table(
-            "related-unplanned",
-            f"Robots of {robots} without a plan, means with 95 % intervals",
-            columns,
-            tuple(unplanned),
-            columns[1:],
-        ),
-        Table(
-            "related-totals",
-            "Total above CARP's for the same robots in per cent: for fixed paths, of the first robots up to the one "
-            "that either leaves without a plan; for LF and greedy, of all, in the assignments in which both plan all",
-            columns,
-            tuple(above),
-            columns[1:],
-        ),
+    shown = [each for each in summary if each.map in shown_maps(by_map)]
+    unplanned = table_by_map(
+        "related-unplanned",
+        f"Robots of {robots} without a plan, means with 95 % intervals",
+        "method",
+        {(each.method, each.map): f"{each.unplanned:.1f}" for each in shown},
     )
-    return ExperimentReport(summary, tables)
+    totals = table_by_map(
+        "related-totals",
+        "Total above CARP's for the same robots in per cent: for fixed paths, of the first robots up to the one that "
+        "either leaves without a plan; for LF and greedy, of all, in the assignments in which both plan all",
+        "method",
+        {(each.method, each.map): _compared(each) for each in shown if each.method != "CARP"},
+    )
+    return ExperimentReport(summary, (unplanned, totals))
 
 
 def related_figures(summary: Sequence[Related]) -> tuple[Figure, ...]:
     """The robots that fixed paths and CARP leave without a plan, and how many more the other orders leave than CARP."""
-    by_method = {name: [each for each in summary if each.method == name] for name in METHODS}
-    fixed = {name: [(each.map, each.unplanned) for each in by_method[name]] for name in (*FIXED, "CARP")}
-    others = {name: [(each.map, each.more_unplanned) for each in by_method[name]] for name in ("LF", "greedy")}
+    fixed = [each for each in summary if each.method in ONE_BY_ONE]
+    others = [each for each in summary if each.method in ORDERED]
+    unplanned = lines_of(fixed, lambda each: each.method, lambda each: (each.map, each.unplanned))
+    more = lines_of(others, lambda each: each.method, lambda each: (each.map, each.more_unplanned))
     axes = (MAP_AXIS, "robots")
     return (
-        Figure("related", "Robots without a plan", axes, fixed),
-        Figure("related-orders", "Robots without a plan, more than with CARP", axes, others),
+        Figure("related", "Robots without a plan", axes, unplanned),
+        Figure("related-orders", "Robots without a plan, more than with CARP", axes, more),
     )
 
 

@@ -11,7 +11,7 @@ import msgspec
 import carp_optimized as engine
 from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, rows_by_map, shown_maps
 from carp_experiments.paper.quality import ALGORITHMS, outcome, plan_all, seeded
-from carp_experiments.report import ExperimentReport, Figure, Table
+from carp_experiments.report import ExperimentReport, Figure, lines_of, table_by_map
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_optimized.fleet import PlannedFleet
@@ -102,13 +102,20 @@ def gap_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
     """A table over some of the maps."""
     by_map = rows_by_map(rows, GapRow)
     summary = tuple(gap_of(map, name, each, robots) for map, each in by_map.items() for name in REPORTED)
-    title = f"Above the optimum that the search found, {robots} robots on {SIDE} x {SIDE} maps"
-    return ExperimentReport(summary, (gap_table(summary, by_map, title),))
+    shown = [each for each in summary if each.map in shown_maps(by_map)]
+    known = {("optimum known", each.map): f"{each.solvable}/{len(by_map[each.map])}" for each in shown}
+    title = (
+        f"Above the optimum that the search found, {robots} robots on {SIDE} x {SIDE} maps: in per cent, means with "
+        "95 % intervals"
+    )
+    cells = {(each.algorithm, each.map): _cell(each) for each in shown}
+    table = table_by_map("gap", title, "algorithm", {**known, **cells})
+    return ExperimentReport(summary, (table,))
 
 
 def gap_figures(summary: Sequence[GapOf]) -> tuple[Figure, ...]:
     """The gap of each algorithm over the maps."""
-    lines = {name: [(each.map, each.gap) for each in summary if each.algorithm == name] for name in REPORTED}
+    lines = lines_of(summary, lambda each: each.algorithm, lambda each: (each.map, each.gap))
     title = f"Above the optimum that the search found, on {SIDE} x {SIDE} maps"
     return (Figure("gap", title, (MAP_AXIS, "per cent above the optimum"), lines),)
 
@@ -123,17 +130,6 @@ def gap_of(map: int, name: str, rows: Sequence[GapRow], robots: int) -> GapOf:
         if planned == robots and row.optimum is not None
     ]
     return GapOf(map, name, len(known), len(known) - len(above), mean_interval(above) if above else None)
-
-
-def gap_table(summary: Sequence[GapOf], by_map: Mapping[int, Sequence[GapRow]], title: str) -> Table:
-    """The gaps on some of the maps, with the failures; above them how many assignments are decided and solvable."""
-    maps = shown_maps(by_map)
-    by_place = {(each.algorithm, each.map): each for each in summary}
-    columns = ("algorithm", *(f"map {map}" for map in maps))
-    decided = ("optimum known", *(f"{by_place['CARP', map].solvable}/{len(by_map[map])}" for map in maps))
-    rows = [(name, *(_cell(by_place[name, map]) for map in maps)) for name in REPORTED]
-    title = f"{title}: in per cent, means with 95 % intervals"
-    return Table("gap", title, columns, (decided, *rows), columns[1:])
 
 
 def _cell(each: GapOf) -> str:
