@@ -135,7 +135,7 @@ generated: install
 paper-sized: compiled
 	$(BIN)/python -m tests.optimized.paper_sized
 
-# All tests with 50,000 examples, CrossHair on the integer leaf functions, and the mutants of the kernel's driver: hours.
+# All tests with 50,000 examples, and the mutants of the kernel's driver: hours.
 nightly: install kernel-driver-mutants
 	HYPOTHESIS_PROFILE=nightly $(BIN)/pytest
 
