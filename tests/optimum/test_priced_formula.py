@@ -4,21 +4,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
-from tests.verify.bound_examples import completed
+from tests.verify.bound_examples import completed, priced
+from tests.verify.models import model_of
 from tests.verify.tiny import TINY
 
 from carp_optimum.bound import lower_bound
 from carp_optimum.lagrangian.reduced_costs import PricedBound, ReducedCosts
 from carp_optimum.sat.core_guided import core_guided
 from carp_optimum.sat.priced_formula import priced_formula
-from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import AfterGoal, Instance, judge
-from carp_spec.documents.bounds import BOUND_FORMAT
-from carp_spec.documents.instances import digest
 from carp_verify.optimum.encoding import Encoding
 from carp_verify.optimum.joint_search import least_total_cost
 from carp_verify.optimum.proof import solution_of
-from carproof import BoundDocument, verify_bound
+from carproof import verify_bound
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import instances
 
@@ -29,13 +27,10 @@ SCALE = 64
 def cheapest(instance: Instance, bound: PricedBound, cost: int) -> int | None:
     """The total of the plans in a model of the formula, which must be lawful; `None` if it has no model."""
     encoding = priced_formula(instance, bound, cost, lambda: None).encoding
-    solver = Solver(encoding.formula, Deadline(SECONDS).check)
-    try:
-        if not solver.satisfiable([]):
-            return None
-        plans = encoding.plans(solver.model())
-    finally:
-        solver.close()
+    model = model_of(encoding.formula)
+    if model is None:
+        return None
+    plans = encoding.plans(model)
     verdict = judge(instance, solution_of(plans))
     assert (verdict.violations, verdict.unplanned) == ((), 0)
     return verdict.cost
@@ -70,17 +65,7 @@ def test_any_prices_leave_the_optimum_and_nothing_cheaper(instance: Instance, da
     prices = data.draw(st.dictionaries(places, st.integers(1, 2 * SCALE), max_size=6))
     certificate = completed(
         instance,
-        BoundDocument(
-            format=BOUND_FORMAT,
-            instance=digest(instance),
-            bound=0,
-            scale=SCALE,
-            horizon=6,
-            resources=tuple((resource, tick, price) for (resource, tick), price in prices.items()),
-            exchanges=(),
-            cuts=(),
-            robots=(),
-        ),
+        priced(instance, horizon=6, scale=SCALE, resources=tuple((*at, price) for at, price in prices.items())),
     )
     assert verify_bound(instance, certificate) <= least
     bound = PricedBound(instance, certificate)

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from itertools import pairwise
+from typing import Any
 
 import msgspec
 from hypothesis import strategies as st
@@ -35,6 +36,12 @@ def crossing() -> Instance:
     return Instance(ResourceGraph(cells, edges), robots)
 
 
+def priced(instance: Instance, **fields: Any) -> BoundDocument:  # noqa: ANN401 - those of the document
+    """A certificate of bound 0 with nothing in it but these fields."""
+    empty = BoundDocument(BOUND_FORMAT, digest(instance), 0, SCALE, HORIZON, (), (), (), ())
+    return msgspec.structs.replace(empty, **fields)
+
+
 def completed(instance: Instance, certificate: BoundDocument) -> BoundDocument:
     """The certificate with all that its prices and cuts prove."""
     tariff = Tariff(instance, certificate)
@@ -64,17 +71,11 @@ def certificates(draw: st.DrawFn, instance: Instance) -> BoundDocument:
     exchanges = draw(st.dictionaries(st.tuples(st.sampled_from(both), ticks), prices, max_size=8)) if both else {}
     ids = [group.id for group in graph.groups]
     groups = draw(st.dictionaries(st.tuples(st.sampled_from(ids), ticks), prices, max_size=8)) if ids else {}
-    certificate = BoundDocument(
-        format=BOUND_FORMAT,
-        instance=digest(instance),
-        bound=0,
-        scale=SCALE,
-        horizon=HORIZON,
-        resources=tuple((place, tick, price) for (place, tick), price in resources.items()),
+    certificate = priced(
+        instance,
+        resources=tuple((*at, price) for at, price in resources.items()),
         exchanges=tuple((*pair, tick, price) for (pair, tick), price in exchanges.items()),
-        cuts=(),
-        robots=(),
-        groups=tuple((group, tick, price) for (group, tick), price in groups.items()),
+        groups=tuple((*at, price) for at, price in groups.items()),
     )
     return completed(instance, certificate)
 

@@ -32,7 +32,8 @@ def deadlines(**fields: object) -> Tamper:
     def tamper(certificate: BoundDocument) -> BoundDocument:
         changed: Any = msgspec.structs.replace(certificate.deadlines[0], **fields)
         tampered = msgspec.structs.replace(certificate, deadlines=(changed,))
-        has_whole_claims = len(changed.seen) != 1 and type(changed.price) is not float
+        is_whole = len(changed.seen) != 1 and len(changed.ticks) == len(changed.robots)
+        has_whole_claims = is_whole and type(changed.price) is not float
         return completed(crossing(), tampered) if has_whole_claims else tampered
 
     return tamper
@@ -87,6 +88,8 @@ DEADLINES: Sequence[tuple[Tamper, str, str]] = (
     (deadlines(robots=(), ticks=()), ".robots", EACH_ONCE),
     (deadlines(robots=("r1",), ticks=(2,)), "", NOT_PROVED),
     (deadlines(ticks=(2, 3)), "", NOT_PROVED),
+    (deadlines(ticks=(2,)), "", "it must have a deadline of each of 2 robots"),
+    (deadlines(ticks=(2, 2, 2)), "", "it must have a deadline of each of 2 robots"),
     (deadlines(ticks=(1, 2)), "", "robot r0 can be at its goal at 2, not at 1"),
     (deadlines(ticks=(2.0, 2)), "", r"not at 2\.0"),
     (deadlines(ticks=(True, 2)), "", "not at True"),

@@ -5,13 +5,12 @@ from time import process_time
 
 import msgspec
 import pytest
-from tests.verify.bound_examples import Tamper, completed, crossing, cut_certificate, deadline_certificate
+from tests.verify.bound_examples import Tamper, completed, crossing, cut_certificate, deadline_certificate, priced
 
 from carp_optimum.bound import lower_bound
 from carp_optimum.lagrangian import price_search
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
-from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
-from carp_spec.documents.instances import digest
+from carp_spec.documents.bounds import BoundDocument
 from carp_verify.bound import rules as bound_rules
 from carp_verify.bound import tariff
 from carp_verify.bound import verify as page
@@ -87,7 +86,7 @@ def test_prices_that_keep_a_robot_waiting_for_long_are_refused_after_a_bounded_s
     lane = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),))
     instance = Instance(lane, (Robot("r", "a", "b"),))
     prices = (*(("b", tick, 10**12) for tick in range(1000)), ("b", 9_999_999, 1))
-    certificate = BoundDocument(BOUND_FORMAT, digest(instance), 0, 1, 10**7, prices, (), (), (("r", 0),))
+    certificate = priced(instance, scale=1, horizon=10**7, resources=prices, robots=(("r", 0),))
     started = process_time()
     with pytest.raises(Refusal, match="bound"):
         verify_bound(instance, certificate)
@@ -133,7 +132,7 @@ def test_that_others_reach_a_goal_or_leave_a_start_is_no_way_between_them(start:
     edges = (("before", "near"), ("near", "far"), ("far", "behind"))
     robots = (Robot("first", "near", "far"), Robot("lost", start, goal))
     instance = Instance(ResourceGraph(cells, edges, directed=True), robots)
-    certificate = BoundDocument(BOUND_FORMAT, digest(instance), 1, 1, 0, (), (), (), (("first", 1), ("lost", None)))
+    certificate = priced(instance, bound=1, scale=1, horizon=0, robots=(("first", 1), ("lost", None)))
     assert verify_bound(instance, certificate) == 1
     claimed = msgspec.structs.replace(certificate, bound=101, robots=(("first", 1), ("lost", 100)))
     with pytest.raises(Refusal, match="robot lost can have no more than None") as refused:
@@ -144,9 +143,8 @@ def test_that_others_reach_a_goal_or_leave_a_start_is_no_way_between_them(start:
 def test_an_instance_that_breaks_a_rule_has_no_bound() -> None:
     cells = (Resource("a"), Resource("b", capacity=0))
     instance = Instance(ResourceGraph(cells, (("a", "b"),)), (Robot("r", "a", "b"),))
-    certificate = BoundDocument(BOUND_FORMAT, "0" * 64, 2, 1, 0, (), (), (), (("r", 2),))
     with pytest.raises(Refusal) as refused:
-        verify_bound(instance, certificate)
+        verify_bound(instance, priced(instance, bound=2, scale=1, horizon=0, robots=(("r", 2),)))
     assert refused.value.rule == "instance/capacity"
 
 
@@ -184,16 +182,10 @@ def of_robot(more: int) -> Tamper:
     ("tamper", "path", "rule", "reason"),
     [
         (change(instance="0" * 64), "$.instance", "bound/instance", "it is about another instance"),
+        (change(instance="f" * 64), "$.instance", "bound/instance", "it is about another instance"),
         (change(scale=3), "$.scale", "bound/scale", "must be a power of two, and is 3"),
-        (change(scale=0), "$.scale", "bound/scale", "and is 0"),
-        (change(scale=True), "$.scale", "bound/scale", "and is True"),
-        (change(scale=4.0), "$.scale", "bound/scale", r"and is 4\.0"),
         (reprice(price=-1), "$.resources[0]", "bound/price", "-1 at . must be a price of at least 0"),
-        (reprice(price=1.5), "$.resources[0]", "bound/price", "1.5 at"),
-        (reprice(price=True), "$.resources[0]", "bound/price", "True at"),
         (reprice(tick=99), "$.resources[0]", "bound/price", "at 99 must be .* at a tick below"),
-        (reprice(tick=-1), "$.resources[0]", "bound/price", "at -1 must be"),
-        (reprice(tick=1.0), "$.resources[0]", "bound/price", r"at 1\.0 must be"),
         (reprice(place="moon"), "$.resources[0]", "bound/price", "moon must be a resource"),
         (exchange("north", "moon", 1, 1), "$.exchanges[0]", "bound/price", "north and moon must be"),
         (exchange("north", "east", 1, 1), "$.exchanges[0]", "bound/price", "with a move each way"),
@@ -203,7 +195,6 @@ def of_robot(more: int) -> Tamper:
             "bound/price",
             "with a move each way",
         ),
-        (change(robots=()), "$.robots", "bound/robots", "must name each robot of the instance once"),
         (lambda each: change(robots=each.robots[1:])(each), "$.robots", "bound/robots", "once, in its order"),
         (lambda each: change(robots=each.robots[::-1])(each), "$.robots", "bound/robots", "once, in its order"),
         (lambda each: change(robots=each.robots * 2)(each), "$.robots", "bound/robots", "once, in its order"),
@@ -228,14 +219,6 @@ def test_a_tampered_certificate_is_refused(tamper: Tamper, path: str | None, rul
 def test_a_scale_is_a_power_of_two() -> None:
     scales = (*range(-8, 18), True, 1.0, 1 << 99, (1 << 99) + 1)
     assert [scale for scale in scales if bound_rules.is_scale(scale)] == [1, 2, 4, 8, 16, 1 << 99]
-
-
-def test_a_certificate_is_about_no_instance_whose_digest_is_less_or_greater() -> None:
-    certificate = lower_bound(crossing(), steps=2)
-    for other in ("", "0" * 64, "f" * 64, certificate.instance.upper()):
-        with pytest.raises(Refusal) as refused:
-            verify_bound(crossing(), msgspec.structs.replace(certificate, instance=other))
-        assert refused.value.rule == "bound/instance"
 
 
 def test_prices_are_whole_numbers_at_ticks_before_the_horizon() -> None:

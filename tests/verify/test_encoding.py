@@ -2,24 +2,19 @@ import pytest
 from hypothesis import given, settings
 from tests.profiles import draws
 from tests.spec.making import row
+from tests.verify.models import has_model, model_of
 from tests.verify.tiny import TINY
 
-from carp_optimum.sat.solver import Deadline, Solver
-from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, total_cost, violations_of
+from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, Robot, total_cost, violations_of
 from carp_verify.optimum.encoding import Encoding, Exchange, violated
-from carp_verify.optimum.joint_search import least_total_cost
 from carproof.testing.strategies import PlannedInstance, instances, planned_instances
 
-SECONDS = 60
-HORIZON = 6
 
-
-def has_model(encoding: Encoding) -> bool:
-    solver = Solver(encoding.formula, Deadline(SECONDS).check)
-    try:
-        return bool(solver.satisfiable([]))
-    finally:
-        solver.close()
+def plans_in(encoding: Encoding) -> list[Plan]:
+    """The plans of a model of its formula."""
+    model = model_of(encoding.formula)
+    assert model is not None
+    return encoding.plans(model)
 
 
 def bounded(instance: Instance, horizons: list[int], bound: int, closed: bool) -> Encoding:
@@ -32,33 +27,6 @@ def bounded(instance: Instance, horizons: list[int], bound: int, closed: bool) -
     return encoding
 
 
-def has_ways(instance: Instance) -> bool:
-    return not Encoding(instance).wayless
-
-
-@settings(max_examples=draws(300))
-@given(instances(TINY, least_robots=1))
-def test_with_horizons_far_enough_the_clauses_have_a_model_from_the_least_total_on(instance: Instance) -> None:
-    least = least_total_cost(instance)
-    if has_ways(instance):
-        horizons = [HORIZON] * len(instance.robots)
-        delay = HORIZON if least is None else least - Encoding(instance).shortest
-        assert not has_model(bounded(instance, horizons, min(delay, HORIZON), closed=True))
-        if delay < HORIZON:
-            assert has_model(bounded(instance, horizons, delay + 1, closed=True))
-
-
-@settings(max_examples=draws(300))
-@given(instances(TINY, least_robots=1))
-def test_short_horizons_only_relax(instance: Instance) -> None:
-    least = least_total_cost(instance)
-    if least is not None:
-        for horizon in (0, 1):
-            horizons = [horizon] * len(instance.robots)
-            delay = least - Encoding(instance).shortest
-            assert has_model(bounded(instance, horizons, delay + 1, closed=False))
-
-
 @settings(max_examples=draws(300))
 @given(planned_instances(TINY))
 def test_the_conflicts_among_plans_are_those_of_the_checker(planned: PlannedInstance) -> None:
@@ -69,14 +37,11 @@ def test_the_conflicts_among_plans_are_those_of_the_checker(planned: PlannedInst
 @settings(max_examples=draws(300))
 @given(instances(TINY, least_robots=2))
 def test_models_with_no_conflict_forbidden_hold_plans_that_break_joint_rules_only(instance: Instance) -> None:
-    if has_ways(instance):
-        encoding = Encoding(instance)
+    encoding = Encoding(instance)
+    if not encoding.wayless:
         encoding.grow_to([2] * len(instance.robots))
         encoding.close()
-        solver = Solver(encoding.formula, Deadline(SECONDS).check)
-        assert solver.satisfiable([])
-        plans = encoding.plans(solver.model())
-        solver.close()
+        plans = plans_in(encoding)
         assert len(plans) == len(instance.robots)
         broken = violations_of(instance, plans)
         assert {violation.rule for violation in broken} <= {"joint/capacity", "joint/exchange"}
@@ -124,11 +89,7 @@ def test_a_conflict_is_named_by_its_tick_and_its_resources() -> None:
     head_on = Instance(row(1, 1), (Robot("a", 0, 1), Robot("b", 1, 0)))
     encoding = Encoding(head_on)
     encoding.grow_to([0, 0])
-    solver = Solver(encoding.formula, Deadline(SECONDS).check)
-    assert solver.satisfiable([])
-    plans = encoding.plans(solver.model())
-    solver.close()
-    assert violated(head_on, plans) == [Exchange(1, (0, 1), (1, 0))]
+    assert violated(head_on, plans_in(encoding)) == [Exchange(1, (0, 1), (1, 0))]
 
 
 def test_a_long_stay_needs_no_more_variables_than_a_short_one() -> None:
@@ -145,4 +106,4 @@ def test_many_robots_in_a_wide_place_are_counted() -> None:
     graph = ResourceGraph((Resource(0, 9), Resource(1, 3), Resource(2, 9)), ((0, 1), (1, 2)))
     instance = Instance(graph, tuple(Robot(i, 0, 2) for i in range(5)))
     for bound, possible in ((2, False), (3, True)):
-        assert has_model(bounded(instance, [2] * 5, bound, closed=True)) == possible
+        assert has_model(bounded(instance, [2] * 5, bound, closed=True).formula) == possible

@@ -1,13 +1,13 @@
 """The search for an optimum, and both formulas of a proof, beside the joint search, on thousands of tiny instances."""
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import pytest
+from tests.verify.models import has_model, model_of
 from tests.verify.tiny import GROUPED, MIX, STOPPING, case
 
 from carp_optimum.optimum import optimum
-from carp_optimum.sat.solver import Deadline, Solver
 from carp_spec import Instance, Solution, judge
 from carp_spec.permutations import shuffle
 from carp_verify.optimum.encoding import Encoding, Evidence, beat_formula, reach_formula
@@ -69,21 +69,23 @@ def faults_of_obstacles(instance: Instance) -> Iterator[str]:
 def faults_of_bounds(instance: Instance, draw: Draw, least: int | None) -> Iterator[str]:
     """Whatever the horizons, more than the least is not refuted; where they reach as far as the bound, less is."""
     bound, delay = bound_of(instance, draw, least)
-    if has_model(beat_formula(instance, bound, evidence(instance, draw, max(delay - 1, 0)))):
+    if has_model(beat_formula(instance, bound, evidence(instance, draw, max(delay - 1, 0))).formula):
         yield f"the formula of less than {bound} has a model, and the least is {least}"
     nearest = draw.between(0, 1) * delay
-    if least is not None and not has_model(beat_formula(instance, least + 1, evidence(instance, draw, nearest, delay))):
-        yield f"the formula of less than {least + 1} has no model, and the least is {least}"
+    if least is not None:
+        beat = beat_formula(instance, least + 1, evidence(instance, draw, nearest, delay))
+        if not has_model(beat.formula):
+            yield f"the formula of less than {least + 1} has no model, and the least is {least}"
 
 
 def faults_of_plans(instance: Instance, draw: Draw, least: int | None) -> Iterator[str]:
     """Where no robot is later than its horizon, less than the least has no model, and models hold plans of it."""
     bound, delay = bound_of(instance, draw, least)
-    if has_model(reach_formula(instance, bound - 1, evidence(instance, draw, 0, delay))):
+    if has_model(reach_formula(instance, bound - 1, evidence(instance, draw, 0, delay)).formula):
         yield f"the formula of at most {bound - 1} has a model, and the least is {least}"
     if least is not None:
         reach = reach_formula(instance, least, evidence(instance, draw, delay))
-        model = model_of(reach)
+        model = model_of(reach.formula)
         if model is None:
             yield f"the formula of at most {least} has no model"
         else:
@@ -103,18 +105,6 @@ def evidence(instance: Instance, draw: Draw, nearest: int, more: int = 1) -> Evi
     robots = range(len(instance.robots))
     horizons = tuple(draw.between(nearest, nearest + more) for _ in robots)
     return Evidence(horizons, shuffle(robots, draw.stream))
-
-
-def has_model(encoding: Encoding) -> bool:
-    return model_of(encoding) is not None
-
-
-def model_of(encoding: Encoding) -> Sequence[bool] | None:
-    solver = Solver(encoding.formula, Deadline(SECONDS).check)
-    try:
-        return solver.model() if solver.satisfiable([]) else None
-    finally:
-        solver.close()
 
 
 @pytest.mark.parametrize("first", range(0, CASES, BLOCK))
