@@ -105,20 +105,61 @@ def test_certificate_and_checker_agree_on_robots_that_know_nothing_of_each_other
         agree(instance, tuple(each for plans in alone for each in plans))
 
 
-def test_a_resource_that_is_too_full_is_refused_with_rule_robots_and_tick() -> None:
-    (breach,) = certify_together(INSTANCE, (EASTWARD, WESTWARD, STANDING)).breaches
-    assert (breach.rule, breach.robots, breach.resource, breach.tick) == ("joint/capacity", ("r1", "r2", "r3"), "b", 1)
-    assert str(breach) == "[joint/capacity] resource b at tick 1: robots r1, r2, r3 (capacity 2)"
+PAIR = ResourceGraph((Resource("a", 2), Resource("b", 2)), (("a", "b"),))
+BLOCK = ResourceGraph(
+    tuple(Resource(name) for name in ("a", "left", "right", "b")),
+    (("a", "left"), ("left", "right"), ("right", "b"), ("a", "right")),
+    groups=(Group("g", ("left", "right")),),
+)
 
 
-def test_a_robot_in_a_resource_for_ever_is_met_at_any_later_tick() -> None:
-    entering = Plan("r2", (Visit("c", 2, None),))
-    (breach,) = certify_together(INSTANCE, (EASTWARD, entering)).breaches
-    assert breach.tick == 2
-    parked = Plan("r2", (Visit("c", 0, None),))
-    late = Plan("r1", (Visit("c", 10**12, 10**12 + 1),))
-    (breach,) = certify_together(INSTANCE, (parked, late)).breaches
-    assert breach.tick == 10**12
+@pytest.mark.parametrize(
+    ("graph", "plans", "tick", "shown"),
+    [
+        (
+            LINE,
+            (EASTWARD, WESTWARD, STANDING),
+            1,
+            "[joint/capacity] resource b at tick 1: robots r1, r2, r3 (capacity 2)",
+        ),
+        (
+            LINE,
+            (EASTWARD, Plan("r2", (Visit("c", 2, None),))),
+            2,
+            "[joint/capacity] resource c at tick 2: robots r1, r2 ",
+        ),
+        (
+            LINE,
+            (Plan("r2", (Visit("c", 0, None),)), Plan("r1", (Visit("c", 10**12, 10**12 + 1),))),
+            10**12,
+            "[joint/capacity] resource c at tick ",
+        ),
+        (LINE, (EASTWARD, Plan("r2", (Visit("b", 0, 1), Visit("a", 1, 2)))), 1, "they exchange a and b"),
+        # one of two that exchange the only resources goes back later
+        (
+            PAIR,
+            (
+                Plan("r1", (Visit("a", 0, 1), Visit("b", 1, 5), Visit("a", 5, 6))),
+                Plan("r2", (Visit("b", 0, 1), Visit("a", 1, 2))),
+            ),
+            1,
+            "[joint/exchange] ",
+        ),
+        # robots in a group are named with a resource of it in which one is at the tick
+        (
+            BLOCK,
+            (Plan("r1", (Visit("left", 0, 2), Visit("right", 2, 5))), Plan("r2", (Visit("left", 4, 6),))),
+            4,
+            "[joint/group] resource right at tick 4: robots r1, r2 (capacity 1 of group g)",
+        ),
+    ],
+)
+def test_a_breach_is_told_with_rule_robots_and_tick(
+    graph: ResourceGraph, plans: tuple[Plan, ...], tick: int, shown: str
+) -> None:
+    (breach,) = certify_together(Instance(graph, (), "vanish"), plans).breaches
+    assert ({*breach.robots}, breach.tick) == ({plan.robot for plan in plans}, tick)
+    assert shown in str(breach)
 
 
 @pytest.mark.parametrize(
@@ -149,8 +190,6 @@ def test_who_comes_within_the_gap_is_refused_where_following_is_forbidden(enter:
 
 
 def test_robots_that_exchange_a_group_of_capacity_one_are_refused_wherever_in_it_they_are() -> None:
-    cells = tuple(Resource(name) for name in ("a", "left", "right", "b"))
-    moves = (("a", "left"), ("left", "right"), ("right", "b"), ("a", "right"))
     one, other = (
         Plan("r1", (Visit("left", 0, 1), Visit("a", 1, 2))),
         Plan("r2", (Visit("a", 0, 1), Visit("right", 1, 2))),
@@ -162,41 +201,15 @@ def test_robots_that_exchange_a_group_of_capacity_one_are_refused_wherever_in_it
         ((Group("block", ("left", "right"), 2),), False),
         ((Group("other", ("b",)), Group("block", ("left", "right"))), True),
     ):
-        instance = Instance(ResourceGraph(cells, moves, groups=groups), robots, "vanish")
+        instance = Instance(replace(BLOCK, groups=groups), robots, "vanish")
         breaches = certify_together(instance, (one, other)).breaches
         assert [(each.rule, each.tick) for each in breaches] == [("joint/exchange", 1)] * refused
         agree(instance, (one, other))
 
 
-def test_robots_in_a_group_are_named_with_a_resource_of_it_in_which_one_is_at_the_tick() -> None:
-    cells = tuple(Resource(name) for name in ("a", "left", "right", "b"))
-    graph = ResourceGraph(
-        cells, (("a", "left"), ("left", "right"), ("right", "b")), groups=(Group("g", ("left", "right")),)
-    )
-    one, other = Plan("r1", (Visit("left", 0, 2), Visit("right", 2, 5))), Plan("r2", (Visit("left", 4, 6),))
-    (breach,) = certify_together(Instance(graph, (), "vanish"), (one, other)).breaches
-    assert (breach.rule, breach.robots, breach.resource, breach.tick) == ("joint/group", ("r1", "r2"), "right", 4)
-    assert " of group g" in breach.reason
-
-
 def test_plans_that_follow_each_other_are_certified() -> None:
     behind = Plan("r2", (Visit("c", 0, 1),))
     assert certify_together(INSTANCE, (EASTWARD, behind)).accepted
-
-
-def test_an_exchange_is_refused_with_rule_robots_and_tick() -> None:
-    meeting = Plan("r2", (Visit("b", 0, 1), Visit("a", 1, 2)))
-    (breach,) = certify_together(INSTANCE, (EASTWARD, meeting)).breaches
-    assert (breach.rule, set(breach.robots), breach.tick) == ("joint/exchange", {"r1", "r2"}, 1)
-    assert "they exchange a and b" in str(breach)
-
-
-def test_robots_exchange_the_only_two_resources_though_one_of_them_goes_back_later() -> None:
-    graph = ResourceGraph((Resource("a", 2), Resource("b", 2)), (("a", "b"),))
-    one = Plan("r1", (Visit("a", 0, 1), Visit("b", 1, 5), Visit("a", 5, 6)))
-    other = Plan("r2", (Visit("b", 0, 1), Visit("a", 1, 2)))
-    (breach,) = certify_together(Instance(graph, (), "vanish"), (one, other)).breaches
-    assert (breach.rule, breach.robots, breach.tick) == ("joint/exchange", ("r1", "r2"), 1)
 
 
 def test_a_robot_that_moves_both_ways_at_a_tick_exchanges_with_nobody() -> None:

@@ -10,14 +10,14 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from tests.verify.bound_examples import crossing, cut_certificate
+from tests.verify.bound_examples import crossing, cut_certificate, priced
 from tests.verify.kernel_program import Json, program, run
 from tests.verify.test_kernel_optimum import claim
 
-from carp_spec import AfterGoal, Instance, Refusal, Resource, ResourceGraph, Robot
-from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, DeadlinesDocument
+from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
+from carp_spec.documents.bounds import BoundDocument, DeadlinesDocument
 from carp_spec.documents.decoding import write
-from carp_spec.documents.instances import digest, instance_document, read_instance, write_instance
+from carp_spec.documents.instances import instance_document, read_instance, write_instance
 from carp_spec.documents.query_certificates import read_query_certificate
 from carp_spec.documents.solutions import read_solution
 from carp_verify.optimum.encoding import Evidence
@@ -63,33 +63,45 @@ FORK = Instance(
     ResourceGraph(tuple(map(Resource, "abcx")), (("a", "b"), ("b", "c"), ("b", "x"))),
     (Robot("r", "a", "c"), Robot("s", "c", "a")),
 )
+PARKING = replace(FORK, after_goal="park")
 
 
 def bound_of(instance: Instance, **fields: object) -> BoundDocument:
     """A bound without prices, with a claim for one robot."""
-    plain = BoundDocument(
-        format=BOUND_FORMAT,
-        instance=digest(instance),
-        bound=1,
-        scale=1,
-        horizon=10**60,
-        resources=(),
-        exchanges=(),
-        cuts=(),
-        robots=(("r", 1),),
-    )
-    return msgspec.structs.replace(plain, **fields)
+    return msgspec.structs.replace(priced(instance, bound=1, scale=1, horizon=10**60, robots=(("r", 1),)), **fields)
 
 
-def test_a_price_in_a_far_future_does_not_fit_into_a_table(tmp_path: Path) -> None:
-    document = bound_of(LANE, resources=(("a", 10**50, 5),), robots=(("r", 10**50),))
-    assert answered(tmp_path, LANE, document) == ("refused", "bound/size")
+def both(claim: int) -> dict[str, object]:
+    """The same claim for both robots of the fork."""
+    return {"robots": (("r", claim), ("s", claim))}
 
 
-def test_the_search_for_the_least_cost_before_a_late_deadline_ends(tmp_path: Path) -> None:
-    deadlines = DeadlinesDocument(("r",), (10**50,), 10**60, "")
-    document = bound_of(LANE, robots=(("r", 10**9),), deadlines=(deadlines,))
-    assert answered(tmp_path, LANE, document) == ("refused", "bound/size")
+def late(tick: int, price: int = 0) -> dict[str, object]:
+    """A deadline of one robot."""
+    return {"deadlines": (DeadlinesDocument(("r",), (tick,), price, ""),)}
+
+
+def seen_late(tick: int) -> dict[str, object]:
+    """Deadlines of both robots of the fork, one of which is seen at the tick."""
+    seen = ((0, ("a",)), (tick, ("c",)))
+    return {"deadlines": (DeadlinesDocument(("r", "s"), (0, 0), 10**6, "2 0 1 0\n", seen=seen),)}
+
+
+HOSTILE: Mapping[str, tuple[Instance, dict[str, object], str]] = {
+    "a price beyond any table": (LANE, {"resources": (("a", 10**50, 5),), "robots": (("r", 10**50),)}, "bound/size"),
+    "a search before a late_deadline": (LANE, {"robots": (("r", 10**9),), **late(10**50, 10**60)}, "bound/size"),
+    **{f"a formula until 10^{most}": (LANE, late(10**most), "bound/size") for most in (7, 9, 40)},
+    # Nor is a cost looked for: a claim that far above the least cost would take long to refute.
+    **{f"seen at 10^{most}": (FORK, {**both(10**6 + 2), **seen_late(10**most)}, "bound/size") for most in (6, 50)},
+    "far above the least": (FORK, {"resources": (("a", 10**6, 5),), **both(10**6)}, "bound/robots"),
+    "and above parking": (PARKING, {"resources": (("a", 10**6, 5),), **both(10**6)}, "bound/robots"),
+}
+
+
+@pytest.mark.parametrize("what", HOSTILE)
+def test_a_bound_that_would_take_long_is_refused_soon(what: str, tmp_path: Path) -> None:
+    instance, fields, rule = HOSTILE[what]
+    assert answered(tmp_path, instance, bound_of(instance, **fields)) == ("refused", rule)
 
 
 def test_a_robot_that_may_wait_for_ever_is_not_followed(tmp_path: Path) -> None:
@@ -103,37 +115,12 @@ def test_a_robot_that_may_wait_for_ever_is_not_followed(tmp_path: Path) -> None:
     assert answered(tmp_path, instance, certificate)[0] == "refused"
 
 
-@pytest.mark.parametrize("tick", [10**7, 10**9, 10**40])
-def test_a_formula_of_too_late_deadlines_is_not_made(tick: int, tmp_path: Path) -> None:
-    deadlines = DeadlinesDocument(("r",), (tick,), 0, "")
-    document = bound_of(LANE, deadlines=(deadlines,))
-    assert answered(tmp_path, LANE, document) == ("refused", "bound/size")
-
-
-@pytest.mark.parametrize("tick", [10**6, 10**50])
-def test_a_formula_of_robots_that_are_seen_too_late_is_not_made(tick: int, tmp_path: Path) -> None:
-    """Nor is a cost looked for: a claim that far above the least cost would take long to refute."""
-    deadlines = DeadlinesDocument(("r", "s"), (0, 0), 10**6, "2 0 1 0\n", seen=((0, ("a",)), (tick, ("c",))))
-    document = bound_of(FORK, robots=(("r", 10**6 + 2), ("s", 10**6 + 2)), deadlines=(deadlines,))
-    assert answered(tmp_path, FORK, document) == ("refused", "bound/size")
-
-
-@pytest.mark.parametrize("after_goal", ["vanish", "park"])
-def test_a_claim_far_above_the_least_cost_is_refused(after_goal: AfterGoal, tmp_path: Path) -> None:
-    instance = replace(FORK, after_goal=after_goal)
-    document = bound_of(instance, resources=(("a", 10**6, 5),), robots=(("r", 10**6), ("s", 10**6)))
-    assert answered(tmp_path, instance, document) == ("refused", "bound/robots")
-
-
 def test_a_formula_of_too_late_cuts_is_not_made(tmp_path: Path) -> None:
     (cut,) = cut_certificate().cuts
     late = msgspec.structs.replace(cut, least=10**9, multiplier=0, horizons=tuple(10**9 for _ in cut.horizons))
     robots = tuple((robot, 0) for robot in crossing().robot)
-    certificate = msgspec.structs.replace(cut_certificate(), bound=0, resources=(), cuts=(late,), robots=robots)
-    assert answered(tmp_path, crossing(), msgspec.structs.replace(certificate, exchanges=())) == (
-        "refused",
-        "bound/size",
-    )
+    certificate = bound_of(crossing(), bound=0, cuts=(late,), robots=robots)
+    assert answered(tmp_path, crossing(), certificate) == ("refused", "bound/size")
 
 
 @pytest.mark.parametrize("duration", [10**6, 10**50])
