@@ -1,13 +1,15 @@
 """The rules once more, tick by tick and pair by pair: slow, short, and written without looking at the checker."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
 from typing import TypeAlias
 
-from carp_spec import Instance, Move, Plan, ResourceId, Stop, Visit
+from carp_spec import Instance, Move, Plan, ResourceGraph, ResourceId, Stop, Visit
 
 FIRST, HORIZON = -15, 45
 Blamed: TypeAlias = tuple[str, Plan, Visit | None]
+Crowded: TypeAlias = tuple[ResourceId, Sequence[ResourceId], int]
+"""A resource or a group, its resources, and its capacity."""
 
 
 def broken_plan_rules(instance: Instance, plan: Plan) -> Iterator[Blamed]:
@@ -56,22 +58,23 @@ def occupies(plan: Plan, resources: Sequence[ResourceId], tick: int) -> bool:
     )
 
 
-def crowds(instance: Instance, plans: Sequence[Plan]) -> Iterator[tuple[ResourceId, int, frozenset[object]]]:
-    """Each resource and tick with too many robots, and which."""
-    for resource in instance.graph.resources:
-        for tick in range(FIRST, HORIZON):
-            robots = frozenset(plan.robot for plan in plans if occupies(plan, [resource.id], tick))
-            if len(robots) > resource.capacity:
-                yield resource.id, tick, robots
+def places_of(graph: ResourceGraph) -> Iterator[Crowded]:
+    for resource in graph.resources:
+        yield resource.id, [resource.id], resource.capacity
 
 
-def crowded_groups(instance: Instance, plans: Sequence[Plan]) -> Iterator[tuple[ResourceId, int, frozenset[object]]]:
-    """Each group and tick with too many robots, and which."""
-    for group in instance.graph.groups:
+def groups_of(graph: ResourceGraph) -> Iterator[Crowded]:
+    for group in graph.groups:
+        yield group.id, group.resources, group.capacity
+
+
+def crowds(places: Iterable[Crowded], plans: Sequence[Plan]) -> Iterator[tuple[ResourceId, int, frozenset[object]]]:
+    """Each place and tick with too many robots, and which."""
+    for place, resources, capacity in places:
         for tick in range(FIRST, HORIZON):
-            robots = frozenset(plan.robot for plan in plans if occupies(plan, group.resources, tick))
-            if len(robots) > group.capacity:
-                yield group.id, tick, robots
+            robots = frozenset(plan.robot for plan in plans if occupies(plan, resources, tick))
+            if len(robots) > capacity:
+                yield place, tick, robots
 
 
 def moves_at(instance: Instance, plan: Plan, tick: int) -> set[tuple[ResourceId, ResourceId]]:

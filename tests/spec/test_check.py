@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.spec.making import SOLVED, VANISHING, plan_of, solution_of
-from tests.spec.naive import HORIZON, broken_plan_rules, crowded_groups, crowds, exchanges
+from tests.spec.naive import HORIZON, broken_plan_rules, crowds, exchanges, groups_of, places_of
 from tests.spec.strategies import FEWER, SIZES, instances_with_plans
 
 import carp_reference
@@ -108,7 +108,7 @@ def test_the_checker_agrees_with_the_rules_spelt_out_tick_by_tick(case: tuple[In
         if each.rule == "joint/capacity" and each.start is not None
     ]
     crowded: dict[tuple[object, int], frozenset[object]] = {
-        (resource, tick): robots for resource, tick, robots in crowds(instance, plans)
+        (resource, tick): robots for resource, tick, robots in crowds(places_of(instance.graph), plans)
     }
     assert Counter((each.resource, tick) for each, ticks in reported for tick in ticks) == Counter(crowded.keys())
     for each, ticks in reported:
@@ -146,7 +146,7 @@ def test_the_checker_agrees_with_groups_spelt_out_tick_by_tick(case: tuple[Insta
         if each.rule == "joint/group"
         for tick in range(each.start or 0, HORIZON if each.end is None else each.end)
     }
-    spelt_out = {(group, tick): robots for group, tick, robots in crowded_groups(instance, plans)}
+    spelt_out = {(group, tick): robots for group, tick, robots in crowds(groups_of(instance.graph), plans)}
     capacity = {group.id: group.capacity for group in instance.graph.groups}
     assert found.keys() == {(f"capacity {capacity[id]} of group {id}", tick) for id, tick in spelt_out}
     for (id, tick), robots in spelt_out.items():

@@ -4,12 +4,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise, product
 
+import networkx as nx
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec import structs
 from tests.profiles import draws
 from tests.spec.making import is_before
-from tests.spec.naive import close
+from tests.spec.naive import close, crowds, places_of
 
 import carp_reference
 from carp_spec import Carp, Instance, Plan, Solution, Visit, violations_of
@@ -124,19 +125,13 @@ def test_what_has_happened_by_a_trace_that_follows_breaks_no_rule_of_robots_toge
 @given(planned_instances(SIZES))
 def test_a_solution_has_a_cycle_if_its_edges_spelt_out_have_one(case: PlannedInstance) -> None:
     instance, plans = case.instance, case.solution.plans
-    edges = {(edge.before, edge.after) for edge in dependencies(instance, plans)}
-    all_edges = set(edges)
+    edges = nx.DiGraph([(edge.before, edge.after) for edge in dependencies(instance, plans)])
     for one, other in pairs(instance, case.solution):
         robot, place = one.last
-        all_edges.add(((robot, place + 1) if one.target is not None else one.last, other.node))
-    nodes = {node for edge in all_edges for node in edge}
-    while True:
-        ends = {node for node in nodes if not any(before == node and after in nodes for before, after in all_edges)}
-        if not ends:
-            break
-        nodes -= ends
-    assert bool(nodes) == bool(list(is_acyclic(instance, case.solution)))
-    assert bool(nodes) == bool(shortest_cycle(tuple(dependencies(instance, plans))))
+        edges.add_edge((robot, place + 1) if one.target is not None else one.last, other.node)
+    has_cycle = not nx.is_directed_acyclic_graph(edges)
+    assert has_cycle == bool(list(is_acyclic(instance, case.solution)))
+    assert has_cycle == bool(shortest_cycle(tuple(dependencies(instance, plans))))
 
 
 @settings(max_examples=draws(400))
@@ -144,17 +139,10 @@ def test_a_solution_has_a_cycle_if_its_edges_spelt_out_have_one(case: PlannedIns
 def test_following_is_what_is_too_full_if_robots_count_a_tick_longer(case: PlannedInstance) -> None:
     graph = replace(case.instance.graph, groups=())  # naive checkers count groups
     forbidding = replace(case.instance, graph=graph, following="forbidden")
-    last = max((visit.leave or visit.enter for plan in case.solution.plans for visit in plan.visits), default=0)
-    crowded = {
-        resource.id
-        for resource in case.instance.graph.resources
-        for tick in range(last + 2)
-        if sum(
-            visit.resource == resource.id and visit.enter <= tick and (visit.leave is None or tick <= visit.leave)
-            for plan in case.solution.plans
-            for visit in plan.visits
-        )
-        > resource.capacity
-    }
+    longer = [
+        replace(plan, visits=tuple(structs.replace(each, leave=each.leave and each.leave + 1) for each in plan.visits))
+        for plan in case.solution.plans
+    ]
+    crowded = {resource for resource, _, _ in crowds(places_of(graph), longer)}
     assert {violation.resource for violation in following_is_avoided(forbidding, case.solution.plans)} == crowded
     assert not list(following_is_avoided(case.instance, case.solution.plans))

@@ -3,6 +3,7 @@
 import random
 from dataclasses import replace
 
+import networkx as nx
 from tests.spec.making import (
     CROSSED,
     RING,
@@ -17,8 +18,8 @@ from tests.spec.making import (
     solution_of,
 )
 
-from carp_spec import Instance, Plan, Solution, Visit, violations_of
-from carp_spec.execution.dependencies import Dependency, Node, dependencies, shortest_cycle
+from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit, violations_of
+from carp_spec.execution.dependencies import Dependency, dependencies, shortest_cycle
 from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carp_spec.execution.traces import Trace
 
@@ -41,38 +42,19 @@ def test_edges_that_follow_from_others_are_left_out_and_none_else() -> None:
         instance, solution = wide_case(seed)
         edges = list(dependencies(instance, solution.plans))
         visits = {(plan.robot, place): visit for plan in solution.plans for place, visit in enumerate(plan.visits)}
-        reached = longest_ways(edges, list(visits))
+        graph = nx.DiGraph([(edge.before, edge.after) for edge in edges])
+        graph.add_nodes_from(visits)
         for (robot, place), visit in visits.items():
             for other, later in visits.items():
                 if visit.resource == later.resource and is_before(instance, visit, later):
                     following = (robot, place + 1)
-                    assert other in ((*reached[following], following) if following in visits else reached[robot, place])
+                    assert nx.has_path(graph, following if following in visits else (robot, place), other)
         orders = [edge for edge in edges if edge.kind == "order"]
         assert len({(edge.before, edge.after) for edge in orders}) == len(orders)
 
 
-def longest_ways(edges: list, nodes: list[Node]) -> dict[Node, set[Node]]:  # type: ignore[type-arg]
-    """The nodes that can be reached from each."""
-    following: dict[Node, list[Node]] = {}
-    for edge in edges:
-        following.setdefault(edge.before, []).append(edge.after)
-    reached = {}
-    for node in nodes:
-        found: set[Node] = set()
-        waiting = [node]
-        while waiting:
-            for after in following.get(waiting.pop(), ()):
-                if after not in found:
-                    found.add(after)
-                    waiting.append(after)
-        reached[node] = found
-    return reached
-
-
 def wide_case(seed: int) -> tuple[Instance, Solution]:
     """Robots that cross one place with room for two, one after the other."""
-    from carp_spec import Resource, ResourceGraph, Robot
-
     draw = random.Random(seed)  # noqa: S311 - no secret
     graph = ResourceGraph((Resource("m", capacity=2), Resource("a", 99), Resource("b", 99)), (("a", "m"), ("m", "b")))
     robots = tuple(Robot(f"r{number}", *draw.choice((("a", "b"), ("b", "a")))) for number in range(6))
@@ -98,8 +80,6 @@ def test_a_cycle_is_a_rotation_and_is_named_with_robots_resources_and_tick() -> 
 
 
 def test_the_shortest_of_several_cycles_is_named() -> None:
-    from carp_spec import Resource, ResourceGraph, Robot
-
     ring = "defg"
     edges = (*RING.edges, *((ring[at - 1], ring[at]) for at in range(4)))
     graph = ResourceGraph((*(Resource(id) for id in ring), *RING.resources), edges)

@@ -17,28 +17,17 @@ from carproof.testing.strategies import resource_graphs
 
 @FEWER
 @given(graph=resource_graphs(SIZES))
-def test_a_move_is_an_edge_or_in_an_undirected_graph_its_reverse(graph: ResourceGraph) -> None:
+def test_resources_are_found_with_their_moves_in_the_order_of_the_graph(graph: ResourceGraph) -> None:
+    for position, resource in enumerate(graph.resources):
+        assert graph.resource[resource.id] is resource
+        assert graph.index[resource.id] == position
     for source in graph.index:
         for target in graph.index:
             edge = (source, target) in graph.edges
             back = (target, source) in graph.edges and not graph.directed
             assert ((source, target) in graph.moves) == (edge or back)
-
-
-@FEWER
-@given(graph=resource_graphs(SIZES))
-def test_successors_stand_in_the_order_of_the_resources(graph: ResourceGraph) -> None:
-    for source in graph.index:
-        reached = [each.id for each in graph.resources if (source, each.id) in graph.moves]
+        reached = [target for target in graph.index if (source, target) in graph.moves]
         assert list(graph.successors[source]) == reached
-
-
-@FEWER
-@given(graph=resource_graphs(SIZES))
-def test_resources_are_found_by_id_and_by_index(graph: ResourceGraph) -> None:
-    for position, resource in enumerate(graph.resources):
-        assert graph.resource[resource.id] is resource
-        assert graph.index[resource.id] == position
 
 
 def test_edges_to_unknown_resources_are_no_moves() -> None:

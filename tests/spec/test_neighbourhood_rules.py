@@ -86,3 +86,16 @@ def test_rounds_of_one_robot_share_its_stream() -> None:
     first, second = (list(neighbourhood_orders(4, 5, stream)) for _ in range(2))
     assert first != second
     assert list(islice(neighbourhood_orders(3, None, stream), 2)) == [(0, 1, 2), (0, 2, 1)]
+
+
+def test_dividing_by_one_term_too_few_takes_the_farther_robot_for_the_nearer() -> None:
+    """An error of the paper, with the figures of docs/explanation/errata.md."""
+    graph = ResourceGraph((Resource("a", x=0, y=0), Resource("b", x=5, y=0), Resource("c", x=6, y=0)), ())
+    robots = (Robot("new", "a", "a"), Robot("near", "b", "b"), Robot("far", "c", "c"))
+    instance = Instance(graph, robots)
+    new = plan_of("new", ("a", 0, 1))
+    near, far = plan_of("near", ("b", 0, 1), ("b", 1, 2)), plan_of("far", ("c", 0, 10), ("c", 10, 11))
+    ours = [distance(instance, new, plan) / 2**16 for plan in (near, far)]
+    assert ours == [5, 6]
+    papers = [mean * terms / (terms - 1) for mean, terms in zip(ours, (2, 11), strict=True)]
+    assert papers == [10, Fraction(66, 10)]
