@@ -21,6 +21,7 @@ CROWDED = Mix(
     releases=range(9),
     paces=range(1, 4),
     both_ways=True,
+    followings=("allowed", "allowed", "forbidden"),
 )
 """As many robots as resources, or half as many."""
 ROOMS = Mix(

@@ -1,4 +1,7 @@
-"""Shortcuts of adding a robot return the same as without them, and as the law: see test_uncompiled.py."""
+"""Shortcuts of adding a robot return the same as without them, and as the law: see test_uncompiled.py.
+
+Compiled code has the sizes in it that some tests change.
+"""
 
 import os
 from fractions import Fraction
@@ -6,16 +9,14 @@ from fractions import Fraction
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from tests.optimized.arrivals import ROOMS, arrivals
 from tests.profiles import draws
 
 import carp_reference
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.neighbourhood import adding as neighbourhood
-from carp_optimized.neighbourhood import distances
-from carp_optimized.neighbourhood.distances import (
-    follow,
-    nearest,
-)
+from carp_optimized.neighbourhood import answers, distances
+from carp_optimized.neighbourhood.distances import follow, nearest
 from carp_optimized.queries.search import find_plan, find_plan_alone
 from carp_optimized.state.arrays import NEVER, NONE, Records, Work
 from carp_optimized.state.room import no_work
@@ -131,3 +132,12 @@ def test_the_windows_hold_just_the_plans_whether_exchanged_whole_or_where_they_d
             fresh.commit(fleet.plans)
             assert rows(fleet) == rows(fresh)
     assert fleet.plans == carp_reference.plan(instance, Neighbourhood(m=4)).plans
+
+
+def test_what_does_not_fit_into_the_memory_of_a_round_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Compiled code has the numbers in it."""
+    monkeypatch.setattr(answers, "PLANS", 3)
+    monkeypatch.setattr(answers, "ANSWERS", 4)
+    for number in range(60):
+        question = arrivals(number, ROOMS)
+        assert question.by_fleet()[0] == question.by_reference(), number
