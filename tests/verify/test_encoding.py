@@ -7,7 +7,10 @@ from tests.verify.tiny import TINY
 
 from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, Robot, total_cost, violations_of
 from carp_verify.optimum.encoding import Encoding, Exchange, violated
+from carp_verify.optimum.joint_search import least_total_cost
 from carproof.testing.strategies import PlannedInstance, instances, planned_instances
+
+FAR = 6
 
 
 def plans_in(encoding: Encoding) -> list[Plan]:
@@ -25,6 +28,19 @@ def bounded(instance: Instance, horizons: list[int], bound: int, closed: bool) -
     if closed:
         encoding.close()
     return encoding
+
+
+@settings(max_examples=draws(300))
+@given(instances(TINY, least_robots=1))
+def test_with_horizons_far_enough_the_clauses_have_a_model_from_the_least_total_on(instance: Instance) -> None:
+    if Encoding(instance).wayless:
+        return
+    least = least_total_cost(instance)
+    delay = FAR if least is None else least - Encoding(instance).shortest
+    horizons = [FAR] * len(instance.robots)
+    assert not has_model(bounded(instance, horizons, min(delay, FAR), closed=True).formula)
+    if delay < FAR:
+        assert has_model(bounded(instance, horizons, delay + 1, closed=True).formula)
 
 
 @settings(max_examples=draws(300))
