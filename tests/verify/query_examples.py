@@ -59,55 +59,48 @@ def beside(instance: Instance, robot: RobotId, *plans: Plan, now: int = 0) -> Qu
     return Question(instance, Solution.of(instance, plans), robot, now)
 
 
+def way(robot: RobotId, visits: str, leave: int | None) -> Plan:
+    """A plan by its resources, each with the tick at which it is entered, and the tick at which it ends."""
+    stays = [(each[0], int(each[1:])) for each in visits.split()]
+    ends = [*(enter for _, enter in stays[1:]), leave]
+    return plan_of(robot, *((resource, enter, end) for (resource, enter), end in zip(stays, ends, strict=True)))
+
+
 EAST = Robot("r", "a", "d")
 WEST = Robot("s", "d", "a")
-WESTWARDS = plan_of("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("a", 4, 5))
+WESTWARDS = way("s", "d0 c1 b3 a4", 5)
 VANISHING = town("vanish", EAST, WEST)
 PARKING = town("park", EAST, replace(WEST, stops=(Stop("e"),)))
 HOME = town("vanish", Robot("r", "b", "b"), WEST)
 QUESTIONS = {
     "alone": beside(VANISHING, "r"),
     "head-on": beside(VANISHING, "r", WESTWARDS),
-    "blocked for ever": beside(
-        town("park", EAST, replace(WEST, stops=(Stop("c"),))), "r", plan_of("s", ("d", 0, 1), ("c", 1, None))
-    ),
-    "parking": beside(PARKING, "r", plan_of("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("e", 4, None))),
+    "blocked for ever": beside(town("park", EAST, replace(WEST, stops=(Stop("c"),))), "r", way("s", "d0 c1", None)),
+    "parking": beside(PARKING, "r", way("s", "d0 c1 b3 e4", None)),
     "a goal that is passed later": beside(
         town("park", replace(EAST, stops=(Stop("b"),)), replace(WEST, stops=(Stop("e"),))),
         "r",
-        plan_of("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("e", 4, None)),
+        way("s", "d0 c1 b3 e4", None),
     ),
     "out of reach": beside(town("vanish", replace(WEST, id="r"), directed=True), "r"),
     "room for two": beside(town("vanish", EAST, WEST, capacity=2), "r", WESTWARDS),
     "room for two, and back into it": beside(
         town("vanish", EAST, replace(WEST, pace=3), Robot("t", "e", "a"), capacity=2),
         "r",
-        plan_of("s", ("d", 0, 3), ("c", 3, 9), ("b", 9, 12), ("a", 12, 15)),
-        plan_of("t", ("e", 0, 4), ("b", 4, 5), ("a", 5, 6)),
+        way("s", "d0 c3 b9 a12", 15),
+        way("t", "e0 b4 a5", 6),
     ),
     "slow": beside(town("vanish", replace(EAST, pace=2), WEST), "r", WESTWARDS),
-    "under way": beside(
-        VANISHING, "r", WESTWARDS, plan_of("r", ("a", 0, 1), ("b", 1, 2), ("c", 2, 4), ("d", 4, 5)), now=1
-    ),
-    "ended": beside(HOME, "r", plan_of("r", ("b", 0, 1)), now=4),
+    "under way": beside(VANISHING, "r", WESTWARDS, way("r", "a0 b1 c2 d4", 5), now=1),
+    "ended": beside(HOME, "r", way("r", "b0", 1), now=4),
     "ended, and in the way": beside(
-        town("vanish", Robot("r", "b", "b"), Robot("s", "b", "e")),
-        "r",
-        plan_of("s", ("b", 0, 1), ("e", 1, 2)),
-        plan_of("r", ("b", 0, 1)),
-        now=4,
+        town("vanish", Robot("r", "b", "b"), Robot("s", "b", "e")), "r", way("s", "b0 e1", 2), way("r", "b0", 1), now=4
     ),
-    "in the way": beside(
-        VANISHING, "r", WESTWARDS, plan_of("r", ("a", 0, 4), ("b", 4, 5), ("c", 5, 7), ("d", 7, 8)), now=4
-    ),
-    "in the way before it left": beside(
-        VANISHING, "r", WESTWARDS, plan_of("r", ("a", 0, 5), ("b", 5, 6), ("c", 6, 8), ("d", 8, 9)), now=5
-    ),
+    "in the way": beside(VANISHING, "r", WESTWARDS, way("r", "a0 b4 c5 d7", 8), now=4),
+    "in the way before it left": beside(VANISHING, "r", WESTWARDS, way("r", "a0 b5 c6 d8", 9), now=5),
     "at its goal": beside(HOME, "r"),
     "may leave its goal now": beside(HOME, "r", now=1),
-    "stayed too long at its goal": beside(
-        HOME, "r", plan_of("s", ("d", 0, 6), ("c", 6, 8), ("b", 8, 9), ("a", 9, 10)), now=3
-    ),
+    "stayed too long at its goal": beside(HOME, "r", way("s", "d0 c6 b8 a9", 10), now=3),
 }
 
 
@@ -115,9 +108,7 @@ SHUTTLE = Robot("r", "a", stops=(Stop("c", 5), Stop("a"), Stop("d", 4)))
 OVER_STOPS = {
     "over stops": beside(town("vanish", SHUTTLE, WEST), "r", WESTWARDS),
     "over stops, to park": beside(
-        town("park", SHUTTLE, replace(WEST, stops=(Stop("e"),))),
-        "r",
-        plan_of("s", ("d", 0, 1), ("c", 1, 3), ("b", 3, 4), ("e", 4, None)),
+        town("park", SHUTTLE, replace(WEST, stops=(Stop("e"),))), "r", way("s", "d0 c1 b3 e4", None)
     ),
     "a stop served at the start": beside(
         town("vanish", replace(SHUTTLE, stops=(Stop("a", 3), Stop("d"))), WEST), "r", WESTWARDS
@@ -125,44 +116,32 @@ OVER_STOPS = {
     "one stop served, under way": beside(
         town("vanish", SHUTTLE, replace(WEST, release=20)),
         "r",
-        plan_of("s", ("d", 20, 21), ("c", 21, 23), ("b", 23, 24), ("a", 24, 25)),
-        plan_of(
-            "r",
-            ("a", 0, 1),
-            ("b", 1, 2),
-            ("c", 2, 7),
-            ("b", 7, 8),
-            ("a", 8, 9),
-            ("b", 9, 10),
-            ("c", 10, 12),
-            ("d", 12, 16),
-        ),
+        way("s", "d20 c21 b23 a24", 25),
+        way("r", "a0 b1 c2 b7 a8 b9 c10 d12", 16),
         now=8,
     ),
     "a stop served by now, under way": beside(
         town("vanish", replace(SHUTTLE, stops=(Stop("a", 2), Stop("d"))), replace(WEST, release=5)),
         "r",
-        plan_of("s", ("d", 5, 6), ("c", 6, 8), ("b", 8, 9), ("a", 9, 10)),
-        plan_of("r", ("a", 0, 4), ("b", 4, 5), ("c", 5, 7), ("d", 7, 8)),
+        way("s", "d5 c6 b8 a9", 10),
+        way("r", "a0 b4 c5 d7", 8),
         now=3,
     ),
     "two stops served, and in the way": beside(
-        town("vanish", SHUTTLE, replace(WEST, release=11)),
-        "r",
-        plan_of("s", ("d", 11, 12), ("c", 12, 14), ("b", 14, 15), ("a", 15, 16)),
+        town("vanish", SHUTTLE, replace(WEST, release=11)), "r", way("s", "d11 c12 b14 a15", 16)
     ),
     "stayed too long at the last stop": beside(
         town("vanish", replace(SHUTTLE, stops=(Stop("a", 2), Stop("d"))), replace(WEST, release=20)),
         "r",
-        plan_of("s", ("d", 20, 21), ("c", 21, 23), ("b", 23, 24), ("a", 24, 25)),
-        plan_of("r", ("a", 0, 2), ("b", 2, 3), ("c", 3, 5), ("d", 5, 9), ("c", 9, 11), ("d", 11, 12)),
+        way("s", "d20 c21 b23 a24", 25),
+        way("r", "a0 b2 c3 d5 c9 d11", 12),
         now=7,
     ),
     "a stop out of reach": beside(town("vanish", replace(SHUTTLE, start="b"), WEST, directed=True), "r"),
     "a long service at the goal": beside(
         town("vanish", replace(EAST, stops=(Stop("d", 6),)), replace(WEST, release=8)),
         "r",
-        plan_of("s", ("d", 8, 9), ("c", 9, 11), ("b", 11, 12), ("a", 12, 13)),
+        way("s", "d8 c9 b11 a12", 13),
     ),
 }
 QUESTIONS |= OVER_STOPS

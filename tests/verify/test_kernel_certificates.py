@@ -17,6 +17,7 @@ from tests.verify.bound_examples import (
     crossing,
     cut_certificate,
     deadline_certificate,
+    priced,
     sight_certificate,
 )
 from tests.verify.forging import changed
@@ -27,9 +28,9 @@ from tests.verify.test_refutation import REFUSED, REFUTED, SQUARE
 from tests.verify.tiny import TINY
 
 from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, RobotId, Solution, has_ended
-from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, read_bound
+from carp_spec.documents.bounds import BoundDocument, read_bound
 from carp_spec.documents.decoding import write
-from carp_spec.documents.instances import digest, instance_document
+from carp_spec.documents.instances import instance_document
 from carp_spec.documents.solutions import solution_document
 from carp_verify.bound.verify import verify_bound
 from carproof.testing.strategies import FleetUnderWay, fleets_under_way, instances
@@ -47,8 +48,12 @@ def certified(instance: Instance, solution: Solution, robot: RobotId, now: int =
 
 
 def verify_query(instance: Instance, solution: Solution, certificate: Json) -> Json:
+    return asked("verify-query", instance, solution, certificate=certificate)
+
+
+def asked(op: str, instance: Instance, solution: Solution, **more: object) -> Json:
     documents = {"instance": instance_document(instance), "solution": solution_document(solution)}
-    return ask(encoded(op="verify-query", certificate=certificate, **documents))
+    return ask(encoded(op=op, **documents, **more))
 
 
 @given(st.data(), fleets_under_way())
@@ -89,10 +94,9 @@ def test_an_audit_accepts_plans_made_one_after_the_other_and_no_later_one(instan
             certificates.append(certificate)
             plans.append(plan)
     solution = Solution.of(instance, plans)
-    documents = {"instance": instance_document(instance), "solution": solution_document(solution)}
-    assert ask(encoded(op="audit", certificates=certificates, **documents))["verdict"] == "accepted"
+    assert asked("audit", instance, solution, certificates=certificates)["verdict"] == "accepted"
     if certificates:
-        verdict = ask(encoded(op="audit", certificates=certificates[1:], **documents))
+        verdict = asked("audit", instance, solution, certificates=certificates[1:])
         assert (verdict["verdict"], verdict["rule"]) == ("refused", "query/optimal")
 
 
@@ -103,8 +107,7 @@ def test_an_audit_refuses_plans_that_break_the_law_and_names_the_rule() -> None:
     alone = [certified(instance, Solution.of(instance, []), robot) for robot in instance.robot]
     certificates = [certificate for _, certificate in alone]
     solution = Solution.of(instance, [plan for plan, _ in alone if plan is not None])
-    documents = {"instance": instance_document(instance), "solution": solution_document(solution)}
-    verdict = ask(encoded(op="audit", certificates=certificates, **documents))
+    verdict = asked("audit", instance, solution, certificates=certificates)
     assert (verdict["verdict"], verdict["rule"]) == ("refused", "joint/exchange")
 
 
@@ -119,15 +122,6 @@ def refute(folder: Path, formula: str, proof: str) -> tuple[int, Json, str]:
     return run("refute", folder / "formula.cnf", folder / "proof.lrat")
 
 
-def test_a_refutation_is_accepted(tmp_path: Path) -> None:
-    assert refute(tmp_path, FORMULA, REFUTED)[0] == 0
-
-
-def test_a_formula_that_has_a_solution_is_not_refuted(tmp_path: Path) -> None:
-    formula = FORMULA.replace("4\n", "3\n", 1).replace("-1 -2 0\n", "")
-    assert refute(tmp_path, formula, REFUTED)[0] == 1
-
-
 @pytest.mark.parametrize(("text", "reason"), REFUSED)
 def test_what_python_refuses_is_refused_or_not_read(text: str, reason: str, tmp_path: Path) -> None:
     code = refute(tmp_path, FORMULA, text)[0]
@@ -139,12 +133,20 @@ MALFORMED_PROOFS = [f"{REFUTED}\n", f"c a comment\n{REFUTED}", "5 2 0 1 2 0 \n",
 MALFORMED_PROOFS += [f"5 {number} 0 1 0\n" for number in (10**18, 10**100, "x", "1.0", "0x1", "1_0", "-")]
 
 
+SATISFIABLE = FORMULA.replace("4\n", "3\n", 1).replace("-1 -2 0\n", "")
+
+
 @pytest.mark.parametrize(
-    ("formula", "proof"),
-    [*((each, REFUTED) for each in MALFORMED_FORMULAS), *((FORMULA, each) for each in MALFORMED_PROOFS)],
+    ("formula", "proof", "code"),
+    [
+        (FORMULA, REFUTED, 0),
+        (SATISFIABLE, REFUTED, 1),
+        *((each, REFUTED, 2) for each in MALFORMED_FORMULAS),
+        *((FORMULA, each, 2) for each in MALFORMED_PROOFS),
+    ],
 )
-def test_a_malformed_formula_or_refutation_is_bad_input(formula: str, proof: str, tmp_path: Path) -> None:
-    assert refute(tmp_path, formula, proof)[0] == 2
+def test_a_refutation_is_accepted_refused_or_bad_input(formula: str, proof: str, code: int, tmp_path: Path) -> None:
+    assert refute(tmp_path, formula, proof)[0] == code
 
 
 # ---- bounds ----
@@ -195,17 +197,8 @@ def test_long_stays_and_late_releases_cost_no_time() -> None:
     resources = (Resource("a", duration=10**60), Resource("b"))
     robots = (Robot("r", "a", "b", release=10**90), Robot("s", "a", "b"))
     instance = Instance(ResourceGraph(resources, (("a", "b"),)), robots)
-    certificate = BoundDocument(
-        format=BOUND_FORMAT,
-        instance=digest(instance),
-        bound=2 * 10**60 + 3 - 3,
-        scale=1,
-        horizon=10**6,
-        resources=(("a", 5, 3),),
-        exchanges=(),
-        cuts=(),
-        robots=(("r", 10**60), ("s", 10**60 + 3)),
-    )
+    claims = (("r", 10**60), ("s", 10**60 + 3))
+    certificate = priced(instance, bound=2 * 10**60, scale=1, horizon=10**6, resources=(("a", 5, 3),), robots=claims)
     assert decided(instance, msgspec.to_builtins(certificate))[1] is None
 
 

@@ -90,14 +90,12 @@ def _repeated_resource(instance: Instance, data: st.DataObject) -> Instance:
     return replace(instance, graph=replace(graph, resources=(*graph.resources, again)))
 
 
-def _policy(instance: Instance, data: st.DataObject) -> Instance:
-    wrong: st.SearchStrategy[Any] = st.none() | st.text().filter(lambda text: text not in ("vanish", "park"))
-    return replace(instance, after_goal=data.draw(wrong))
+def _policy(name: str, *known: str) -> Plant:
+    def plant(instance: Instance, data: st.DataObject) -> Instance:
+        wrong: st.SearchStrategy[Any] = st.none() | st.text().filter(lambda text: text not in known)
+        return replace(instance, **{name: data.draw(wrong)})
 
-
-def _following(instance: Instance, data: st.DataObject) -> Instance:
-    wrong: st.SearchStrategy[Any] = st.none() | st.text().filter(lambda text: text not in ("allowed", "forbidden"))
-    return replace(instance, following=data.draw(wrong))
+    return plant
 
 
 def _stops(instance: Instance, data: st.DataObject) -> Instance:
@@ -126,8 +124,8 @@ PLANTS: Mapping[str, Plant] = {
     "instance/stops": _stops,
     "instance/release": _robot("release", st.integers(max_value=-1) | st.sampled_from([False, 0.0, None])),
     "instance/pace": _robot("pace", TOO_SMALL),
-    "instance/after-goal": _policy,
-    "instance/following": _following,
+    "instance/after-goal": _policy("after_goal", "vanish", "park"),
+    "instance/following": _policy("following", "allowed", "forbidden"),
 }
 
 
