@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.spec.making import worth
 
 import carp_optimized
 import carp_optimized.fleet
@@ -27,7 +28,6 @@ from carp_spec import (
     check_update,
     judge,
     plan_cost,
-    total_cost,
 )
 from carproof import polish
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
@@ -51,10 +51,6 @@ def both(instance: Instance, solution: Solution, iterations: int, seed: int, now
     assert fast == readable
     assert not reference or last[-1] == reference[0]
     return fast
-
-
-def worth(instance: Instance, solution: Solution) -> tuple[int, int]:
-    return (len(instance.robots) - len(solution.plans), total_cost(instance, solution.plans))
 
 
 @given(planned_instances(SIZES), st.integers(0, 25), SEEDS)

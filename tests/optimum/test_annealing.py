@@ -5,13 +5,14 @@ from itertools import count, pairwise
 
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.spec.making import worth
 
 from carp_optimized import plan, polish
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.annealing import anneal
 from carp_optimized.improve.repair import repair
 from carp_optimized.neighbourhood.polishing import CHANCE
-from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, Solution, judge, total_cost
+from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, judge, total_cost
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
@@ -22,10 +23,6 @@ def ticking() -> Callable[[], float]:
     """A clock that is a second later at each look, so that one call of the planner takes a second."""
     seconds = count()
     return lambda: next(seconds)
-
-
-def worth(solution: Solution, instance: Instance) -> tuple[int, int]:
-    return (len(instance.robots) - len(solution.plans), total_cost(instance, solution.plans))
 
 
 def lane_with_robots_at_both_ends(robots: int, length: int) -> Instance:
@@ -46,7 +43,7 @@ def test_annealed_plans_are_lawful_and_never_worse(planned: PlannedInstance, sec
     instance = planned.instance
     annealed = anneal(instance, planned.solution, seconds, seed=seed, clock=ticking())
     assert judge(instance, annealed).valid
-    assert worth(annealed, instance) <= worth(planned.solution, instance)
+    assert worth(instance, annealed) <= worth(instance, planned.solution)
     assert annealed == anneal(instance, planned.solution, seconds, seed=seed, clock=ticking())
 
 

@@ -3,15 +3,10 @@
 from itertools import pairwise
 
 import pytest
-from hypothesis import given, settings
-from tests.profiles import draws
-from tests.verify.tiny import TINY
 
 from carp_optimum.bound import lower_bound
-from carp_verify.optimum.joint_search import least_total_cost
 from carproof import Instance, Resource, ResourceGraph, Robot, verify_bound
 from carproof.generate import Fleet, Grid, grid_instance
-from carproof.testing.strategies import instances
 
 
 def two_lanes() -> Instance:
@@ -54,12 +49,3 @@ def test_robots_that_are_seen_more_than_once_raise_the_bound(monkeypatch: pytest
     assert sum(len(each.robots) > len(set(each.robots)) for each in certificate.deadlines) > 1
     monkeypatch.setattr("carp_optimum.claims.pair_constraints.MOST_SIGHTS", -1)
     assert certificate.bound > lower_bound(instance, steps=1600).bound
-
-
-@settings(max_examples=draws(60))
-@given(instances(TINY, least_robots=2))
-def test_no_claim_raises_a_bound_above_the_optimum(instance: Instance) -> None:
-    least = least_total_cost(instance)
-    certificate = lower_bound(instance, steps=300)
-    assert certificate.bound == verify_bound(instance, certificate)
-    assert least is None or certificate.bound <= least

@@ -7,15 +7,7 @@ from hypothesis import strategies as st
 from tests.profiles import draws
 
 import carp_reference
-from carp_spec import (
-    Carp,
-    Instance,
-    Neighbourhood,
-    check_update,
-    judge,
-    neighbourhood_rules,
-    total_cost,
-)
+from carp_spec import Carp, Instance, Neighbourhood, check_update, judge, neighbourhood_rules, total_cost
 from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way, instances
 
 CROWDED = Sizes(resources=6, robots=5, duration=2)

@@ -6,14 +6,7 @@ import pytest
 from tests.spec.making import grid, instance, line
 
 from carp_reference import orderings, plan
-from carp_spec import (
-    Carp,
-    Greedy,
-    LongestFirst,
-    Resource,
-    ResourceGraph,
-    Shuffled,
-)
+from carp_spec import Carp, Greedy, LongestFirst, Resource, ResourceGraph, Shuffled
 
 SIDING = ResourceGraph(tuple(map(Resource, "abcde")), (("a", "b"), ("b", "c"), ("c", "d"), ("b", "e")))
 

@@ -3,16 +3,12 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
-from tests.spec.making import instance_on, line
+from tests.spec.making import instance_on, line, worth
 
 from carp_reference import polish
-from carp_spec import Instance, Robot, Solution, judge, total_cost
+from carp_spec import Robot, Solution, judge
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
-
-
-def worth(instance: Instance, solution: Solution) -> tuple[int, int]:
-    return (len(instance.robots) - len(solution.plans), total_cost(instance, solution.plans))
 
 
 @settings(max_examples=draws(300))

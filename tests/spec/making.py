@@ -4,7 +4,19 @@ from collections.abc import Iterable
 from itertools import pairwise
 from typing import TypeAlias
 
-from carp_spec import AfterGoal, Instance, Plan, Resource, ResourceGraph, ResourceId, Robot, RobotId, Solution, Visit
+from carp_spec import (
+    AfterGoal,
+    Instance,
+    Plan,
+    Resource,
+    ResourceGraph,
+    ResourceId,
+    Robot,
+    RobotId,
+    Solution,
+    Visit,
+    total_cost,
+)
 
 Stay: TypeAlias = tuple[ResourceId, int, int | None]
 
@@ -48,6 +60,11 @@ def plan_of(robot: RobotId, *stays: Stay) -> Plan:
 def solution_of(plans: Iterable[Plan], unplanned: tuple[RobotId, ...] = ()) -> Solution:
     plans = tuple(plans)
     return Solution(plans, tuple(plan.robot for plan in plans), unplanned)
+
+
+def worth(instance: Instance, solution: Solution) -> tuple[int, int]:
+    """How many robots have no plan, and the total: what a polish makes less."""
+    return (len(instance.robots) - len(solution.plans), total_cost(instance, solution.plans))
 
 
 # A line a - b - c - d with e beside b and f beside c. Two robots fit into b, and c takes two ticks.

@@ -9,23 +9,9 @@ from msgspec import structs
 from tests.spec.making import PARKED, SOLVED, plan_of
 from tests.spec.strategies import FEWER
 
-from carp_spec import (
-    Instance,
-    Plan,
-    Resource,
-    ResourceGraph,
-    Robot,
-    Stop,
-    Visit,
-    has_ended,
-)
+from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Stop, Visit, has_ended
 from carp_spec.instance_rules import stops_are_places_to_serve
-from carp_spec.plan_rules import (
-    least_stays,
-    plan_keeps_history,
-    stops_left,
-    stops_served,
-)
+from carp_spec.plan_rules import least_stays, plan_keeps_history, stops_left, stops_served
 
 
 @pytest.mark.parametrize(

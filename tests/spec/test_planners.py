@@ -2,16 +2,7 @@
 
 import pytest
 
-from carp_spec import (
-    Carp,
-    FixedPaths,
-    Greedy,
-    LongestFirst,
-    Neighbourhood,
-    Planner,
-    Shuffled,
-    TimeExpanded,
-)
+from carp_spec import Carp, FixedPaths, Greedy, LongestFirst, Neighbourhood, Planner, Shuffled, TimeExpanded
 from carp_spec.inputs.options import LARGEST_SAMPLE, options_are_right
 from carp_spec.planners import LARGEST_SEED
 from carproof.planner_options import PLANNERS, planner_named

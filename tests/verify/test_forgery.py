@@ -25,11 +25,7 @@ from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
 from carp_spec.documents.bounds import BoundDocument, CutDocument, read_bound
 from carp_spec.documents.decoding import write
 from carp_spec.documents.instances import digest
-from carp_spec.documents.query_certificates import (
-    ServedLayer,
-    certificate_of,
-    read_query_certificate,
-)
+from carp_spec.documents.query_certificates import ServedLayer, certificate_of, read_query_certificate
 from carp_verify.bound.cuts import formula_of
 from carp_verify.bound.verify import verify_bound
 from carp_verify.optimum.clauses import dimacs

@@ -13,14 +13,7 @@ import carp_optimized
 import carp_reference
 from carp_experiments.measuring import kernel_verdicts
 from carp_experiments.measuring.blocks import BLOCK
-from carp_experiments.measuring.kernel_verdicts import (
-    VERDICTS,
-    Question,
-    Verdicts,
-    checked,
-    compared,
-    verified,
-)
+from carp_experiments.measuring.kernel_verdicts import VERDICTS, Question, Verdicts, checked, compared, verified
 from carp_spec import Carp, Instance, Solution
 from carp_verify.kernel import KernelVerdict, ask
 from carproof.generate import Fleet, Grid, Warehouse, grid_instance, warehouse_instance

@@ -1,11 +1,11 @@
 """Goals that are cut off: who is left out has no path, says a search of all places and ticks, which is soon known."""
 
 from collections import Counter
-from dataclasses import replace
 
 import numpy as np
+from tests.optimized.crowds.measuring import measured, on_grid
 
-from carp_optimized.crowds.crowd import FAR, Crowd, crowd_of, measure
+from carp_optimized.crowds.crowd import Crowd
 from carp_optimized.crowds.cut_off import is_cut_off
 from carp_optimized.crowds.improving import Improving
 from carp_optimized.crowds.rounds import GREEDY, Rounds, rounds_at
@@ -13,7 +13,6 @@ from carp_optimized.crowds.sipp import EXPANDED, MANY, UNTIL_FOUND
 from carp_optimized.crowds.stays import Paths, no_paths
 from carp_optimized.jit.compiling import entry
 from carp_optimized.jit.references import Native
-from carproof.generate import Fleet, Grid, grid_instance
 
 SIDE, ROBOTS = 40, 533
 LAST = 600
@@ -47,10 +46,8 @@ def has_path(crowd: Crowd, paths: Paths, robot: int) -> bool:
 def test_who_is_cut_off_has_no_path() -> None:
     counts = Counter[tuple[bool, bool]]()
     for seed in range(150):
-        instance = grid_instance(Grid(width=4, height=4, map=0), Fleet(robots=9, seed=seed))
-        crowd = crowd_of(replace(instance, after_goal="park"))
+        crowd = measured(on_grid(4, 9, "park", seed, map=0))
         order = np.arange(9, dtype=np.int32)
-        measure(Native(crowd), order, 0, 9, FAR)
         improving = Improving(crowd, no_paths(9, 50))
         improving.plan_first(order[:8], lambda: True, 0, UNTIL_FOUND)
         state = improving.rounds
@@ -63,10 +60,8 @@ def test_who_is_cut_off_has_no_path() -> None:
 
 
 def test_it_is_soon_known_in_a_large_crowd() -> None:
-    instance = grid_instance(Grid(width=SIDE, height=SIDE, map=0), Fleet(robots=ROBOTS))
-    crowd = crowd_of(replace(instance, after_goal="park"))
+    crowd = measured(on_grid(SIDE, ROBOTS, map=0))
     order = np.random.default_rng(0).permutation(ROBOTS).astype(np.int32)
-    measure(Native(crowd), order, 0, ROBOTS, FAR)
     improving = Improving(crowd, no_paths(ROBOTS, 400))
     soon = 0
     for k in range(ROBOTS):

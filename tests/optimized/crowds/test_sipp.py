@@ -1,20 +1,16 @@
 """Queries among robots with paths: the earliest arrival without greed, and a lawful path with any greed."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from tests.optimized.crowds.measuring import measured, on_grid
 
-from carp_optimized.crowds.crowd import FAR, Crowd, crowd_of, measure
 from carp_optimized.crowds.improving import Improving, arrivals
 from carp_optimized.crowds.rounds import DEGREES, GREEDY
 from carp_optimized.crowds.sipp import UNTIL_FOUND
 from carp_optimized.crowds.stays import no_paths
 from carp_optimized.improve.planning import solution_along
-from carp_optimized.jit.references import Native
 from carp_reference import query
 from carp_spec import AfterGoal, Instance, judge
-from carproof.generate import Fleet, Grid, grid_instance
 
 ROBOTS = 14
 DEGREES_OF_GREED = [GREEDY * degree**2 for degree in range(DEGREES)]
@@ -22,19 +18,6 @@ DEGREES_OF_GREED = [GREEDY * degree**2 for degree in range(DEGREES)]
 
 def never_ends() -> bool:
     return True
-
-
-def crowd(seed: int, after_goal: AfterGoal) -> Instance:
-    return replace(
-        grid_instance(Grid(width=6, height=6, map=20), Fleet(robots=ROBOTS, seed=seed)), after_goal=after_goal
-    )
-
-
-def measured(instance: Instance) -> Crowd:
-    found = crowd_of(instance)
-    robots = np.arange(ROBOTS, dtype=np.int32)
-    measure(Native(found), robots, 0, ROBOTS, FAR)
-    return found
 
 
 def planned(instance: Instance, greed: int, last: int) -> Improving:
@@ -50,7 +33,7 @@ def planned(instance: Instance, greed: int, last: int) -> Improving:
 def test_a_path_is_found_with_any_greed_or_with_none_and_comes_no_earlier_than_without(after_goal: AfterGoal) -> None:
     later = 0
     for seed in range(12):
-        instance = crowd(seed, after_goal)
+        instance = on_grid(6, ROBOTS, after_goal, seed)
         for last in range(1, ROBOTS):
             found = [planned(instance, greed, last).rounds.paths for greed in DEGREES_OF_GREED]
             assert len({bool(paths.size[last]) for paths in found}) == 1
@@ -66,7 +49,7 @@ def test_a_path_is_found_with_any_greed_or_with_none_and_comes_no_earlier_than_w
 @pytest.mark.parametrize("after_goal", ["park", "vanish"])
 def test_without_greed_robots_arrive_as_early_as_by_the_reference(after_goal: AfterGoal) -> None:
     for seed in range(4):
-        instance = crowd(seed, after_goal)
+        instance = on_grid(6, ROBOTS, after_goal, seed)
         for last in range(1, ROBOTS):
             paths = planned(instance, 0, last).rounds.paths
             plans = solution_along(instance, instance.robots, paths).plans

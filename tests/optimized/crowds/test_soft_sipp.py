@@ -1,20 +1,17 @@
 """Paths through the stays of others: lawful steps, nobody met without need, and each robot met is planned again."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.optimized.crowds.measuring import measured, on_grid
 
-from carp_optimized.crowds.crowd import FAR, crowd_of, measure
 from carp_optimized.crowds.improving import Improving
 from carp_optimized.crowds.rounds import GREEDY
 from carp_optimized.crowds.sipp import UNTIL_FOUND
 from carp_optimized.crowds.stays import no_paths
 from carp_optimized.improve.planning import solution_along
-from carp_optimized.jit.references import Native
 from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, Solution, judge
-from carproof.generate import Fleet, Grid, grid_instance
 
 ROBOTS = 60
 
@@ -23,14 +20,11 @@ def planned(
     instance: Instance, order: Sequence[int], *, has_way: bool, greed: int = GREEDY, effort: int = UNTIL_FOUND
 ) -> tuple[Solution, int]:
     """Plans in order, with way made for those that find none or without; and how often nobody's way was free."""
-    crowd = crowd_of(instance)
-    robots = np.arange(len(instance.robots), dtype=np.int32)
-    measure(Native(crowd), robots, 0, robots.size, FAR)
-    improving = Improving(crowd, no_paths(robots.size, 400))
+    improving = Improving(measured(instance), no_paths(len(instance.robots), 400))
     improving.plan_first(np.array(order, np.int32), lambda: True, greed, effort)
     paths = improving.rounds.paths
     if has_way:
-        paths = improving.make_way(lambda _: improving.missed < 100 * robots.size)
+        paths = improving.make_way(lambda _: improving.missed < 100 * len(instance.robots))
     return solution_along(instance, instance.robots, paths), improving.missed
 
 
@@ -38,8 +32,7 @@ def planned(
 def test_robots_that_found_no_path_have_one_once_way_is_made(after_goal: AfterGoal) -> None:
     missing = 0
     for seed in range(24):
-        instance = grid_instance(Grid(width=9, height=9, map=20), Fleet(robots=ROBOTS, seed=seed))
-        instance = replace(instance, after_goal=after_goal)
+        instance = on_grid(9, ROBOTS, after_goal, seed)
         greed = GREEDY * (seed % 3) ** 2
         without, _ = planned(instance, range(ROBOTS), has_way=False, greed=greed)
         found, _ = planned(instance, range(ROBOTS), has_way=True, greed=greed)

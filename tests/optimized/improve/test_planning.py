@@ -4,21 +4,19 @@ from dataclasses import replace
 from time import process_time
 from typing import Any
 
-import numpy as np
 import pytest
 from hypothesis import given
+from tests.optimized.crowds.measuring import measured, on_grid
 
-from carp_optimized.crowds.crowd import FAR, crowd_of, is_stepwise, measure, ways_of
+from carp_optimized.crowds.crowd import is_stepwise, ways_of
 from carp_optimized.crowds.improving import arrivals, paths_of
 from carp_optimized.crowds.rounds import GREEDY
 from carp_optimized.improve import first_paths, planning
 from carp_optimized.improve.clock import ALL, Clock
 from carp_optimized.improve.cycles import FEW, SPARSE, improved
 from carp_optimized.improve.planning import improve_crowd
-from carp_optimized.jit.references import Native
 from carp_optimized.lacam.search import Search, plans_by_steps
 from carp_spec import AfterGoal, Instance, RobotId, Solution, judge, total_cost
-from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import Sizes, instances
 
 
@@ -30,12 +28,6 @@ def plan_crowd(instance: Instance, **options: Any) -> Solution:  # noqa: ANN401 
 
 
 STEPWISE = Sizes(resources=7, robots=5, capacity=1, duration=1, release=0, pace=1)
-
-
-def crowd(side: int, robots: int, after_goal: AfterGoal = "park", seed: int = 0) -> Instance:
-    """Robots on a full square grid."""
-    made = grid_instance(Grid(width=side, height=side, map=20), Fleet(robots=robots, seed=seed))
-    return replace(made, after_goal=after_goal)
 
 
 @given(instances(STEPWISE).filter(lambda each: is_stepwise(each) and len(each.robots) > 0))
@@ -54,7 +46,7 @@ def test_plans_break_no_rule_are_the_same_again_and_no_worse_than_the_first(inst
 def test_rounds_improve_a_crowd_and_its_best_total_never_rises(after_goal: AfterGoal, side: int) -> None:
     both_starts_are_tried = FEW * 60 <= 3000 and side**2 >= SPARSE * 60
     assert both_starts_are_tried == (side == 23)
-    instance = crowd(side, 60, after_goal)
+    instance = on_grid(side, 60, after_goal)
     seen: list[int] = []
     found = plan_crowd(instance, iterations=3000, seconds=None, advance=lambda _, __, total: seen.append(total))
     assert judge(instance, found).valid
@@ -68,7 +60,7 @@ def test_rounds_improve_a_crowd_and_its_best_total_never_rises(after_goal: After
 @pytest.mark.parametrize("jammed", [0, 10**6])
 def test_plans_are_lawful_with_less_greed_and_with_other_orders(jammed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(first_paths, "JAMMED", jammed)
-    instance = crowd(12, 60)
+    instance = on_grid(12, 60)
     found = plan_crowd(instance, iterations=50, seconds=None)
     assert judge(instance, found).valid
     assert not found.unplanned
@@ -76,8 +68,7 @@ def test_plans_are_lawful_with_less_greed_and_with_other_orders(jammed: int, mon
 
 @pytest.mark.parametrize("iterations", [1, 40, 2000])
 def test_rounds_from_two_starts_end_no_worse_than_either_in_whatever_order_they_come(iterations: int) -> None:
-    found = crowd_of(crowd(23, 60))
-    measure(Native(found), np.arange(60, dtype=np.int32), 0, 60, FAR)
+    found = measured(on_grid(23, 60))
     always = Clock(None, process_time, 0.0)
     search = Search(found)
     search.go(10**6)
@@ -91,8 +82,7 @@ def test_rounds_from_two_starts_end_no_worse_than_either_in_whatever_order_they_
 
 def test_a_way_through_others_has_room_for_more_visits_than_the_longest_way(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(first_paths, "LONGEST", 1)
-    found = crowd_of(crowd(12, 60))
-    measure(Native(found), np.arange(60, dtype=np.int32), 0, 60, FAR)
+    found = measured(on_grid(12, 60))
     always = Clock(None, process_time, 0.0)
     planned = first_paths.planned_in_order(found, always, 0, ALL, GREEDY, 30, ways_of(found))
     assert planned.size.all()
@@ -102,8 +92,8 @@ def test_a_way_through_others_has_room_for_more_visits_than_the_longest_way(monk
     ("side", "robots", "seconds"), [(8, 20, 0.3), (40, 300, 0.5), (70, 1500, 1.5), (90, 3000, 0.2)]
 )
 def test_the_time_is_kept_at_several_sizes(side: int, robots: int, seconds: float) -> None:
-    instance = crowd(side, robots)
-    plan_crowd(crowd(3, 2), iterations=1, seconds=None)
+    instance = on_grid(side, robots)
+    plan_crowd(on_grid(3, 2), iterations=1, seconds=None)
     started = process_time()
     found = plan_crowd(instance, iterations=None, seconds=seconds, clock=process_time)
     assert process_time() - started < 1.5 * seconds + 0.5
@@ -113,13 +103,13 @@ def test_the_time_is_kept_at_several_sizes(side: int, robots: int, seconds: floa
 
 def test_nobody_has_a_plan_where_the_time_is_over_at_once() -> None:
     ticks = iter(range(10**9))
-    instance = crowd(5, 4)
+    instance = on_grid(5, 4)
     found = plan_crowd(instance, iterations=None, seconds=0.5, clock=lambda: float(next(ticks)))
     assert len(found.unplanned) == 4
 
 
 def test_robots_that_nobody_could_plan_do_not_keep_the_others_from_plans() -> None:
-    instance = crowd(8, 20)
+    instance = on_grid(8, 20)
     first = instance.robots[0]
     hopeless = (replace(first, id="same start"), replace(first, id="same goal", start=first.goal))
     found = plan_crowd(replace(instance, robots=(*instance.robots, *hopeless)), iterations=10, seconds=None)
@@ -127,7 +117,7 @@ def test_robots_that_nobody_could_plan_do_not_keep_the_others_from_plans() -> No
 
 
 def test_the_nearest_robots_are_planned_where_there_is_no_time_for_all() -> None:
-    instance = crowd(60, 1200)
+    instance = on_grid(60, 1200)
     ticks = iter(range(10**9))
     found = plan_crowd(instance, iterations=None, seconds=40, clock=lambda: float(next(ticks)))
     assert judge(instance, found).valid
@@ -144,12 +134,12 @@ def test_the_nearest_robots_are_planned_where_there_is_no_time_for_all() -> None
 def test_time_is_left_to_plan_some_robots_where_lacam_does_not_end(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Search, "go", lambda *_: None)
     ticks = iter(range(10**9))
-    found = plan_crowd(crowd(60, 1200), iterations=None, seconds=3000, clock=lambda: float(next(ticks)))
+    found = plan_crowd(on_grid(60, 1200), iterations=None, seconds=3000, clock=lambda: float(next(ticks)))
     assert len(found.plans) > 50
 
 
 def test_given_plans_get_better_within_the_time() -> None:
-    instance = crowd(70, 1500)
+    instance = on_grid(70, 1500)
     given = plan_crowd(instance, iterations=0, seconds=None)
     started = process_time()
     found = improve_crowd(instance, given, 1.5, clock=process_time)

@@ -1,16 +1,15 @@
 """Guides: ways along edges that are little longer than the shortest, and that meet few others."""
 
 from collections import Counter
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
+from tests.optimized.crowds.measuring import measured, on_grid
 
-from carp_optimized.crowds.crowd import FAR, Crowd, crowd_of, measure
+from carp_optimized.crowds.crowd import Crowd
 from carp_optimized.jit.compiling import entry
 from carp_optimized.jit.references import Native
 from carp_optimized.lacam.guides import SLACK, Guides, find_guides, guides_at, guides_of, uses_of
-from carproof.generate import Fleet, Grid, grid_instance
 
 ROBOTS = 40
 
@@ -61,9 +60,7 @@ def fewest(crowd: Crowd, others: list[list[int]], robot: int, slack: int) -> int
 
 
 def crowd_and_guides(seed: int) -> tuple[Crowd, Guides]:
-    instance = grid_instance(Grid(width=8, height=8, map=seed), Fleet(robots=ROBOTS, seed=seed))
-    crowd = crowd_of(replace(instance, after_goal="park"))
-    measure(Native(crowd), np.arange(ROBOTS, dtype=np.int32), 0, ROBOTS, FAR)
+    crowd = measured(on_grid(8, ROBOTS, "park", seed, map=seed))
     *_, guides = guides_of(crowd, lambda: True)
     return crowd, guides
 

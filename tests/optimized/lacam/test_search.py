@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import pytest
 from hypothesis import given
+from tests.optimized.crowds.measuring import on_grid
 
 from carp_optimized import plan
 from carp_optimized.crowds.crowd import is_stepwise
 from carp_optimized.lacam.search import STEPS, plans_by_steps
-from carp_spec import AfterGoal, Carp, Instance, Resource, ResourceGraph, Robot, Solution, judge
+from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, Solution, judge
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.testing.strategies import Sizes, instances
 
@@ -23,12 +24,6 @@ def keeps_the_law(instance: Instance, steps: int = STEPS) -> bool:
     return not verdict.unplanned
 
 
-def crowd(side: int, robots: int, after_goal: AfterGoal, seed: int = 0, map: int = 20) -> Instance:
-    """Robots on a square grid, a full one or another of the paper's maps."""
-    made = grid_instance(Grid(width=side, height=side, map=map), Fleet(robots=robots, seed=seed))
-    return replace(made, after_goal=after_goal)
-
-
 def row_with_pockets(length: int, pockets: tuple[int, ...], robots: tuple[tuple[int, int], ...]) -> Instance:
     """Cells in a row, pockets beside some of them, and robots that park, from cell to cell."""
     resources = [Resource(f"c{k}") for k in range(length)] + [Resource(f"p{k}") for k in pockets]
@@ -39,12 +34,12 @@ def row_with_pockets(length: int, pockets: tuple[int, ...], robots: tuple[tuple[
 
 @pytest.mark.parametrize("seed", range(3))
 def test_robots_on_every_cell_of_a_grid_get_plans(seed: int) -> None:
-    assert keeps_the_law(crowd(6, 36, "vanish", seed))
-    assert keeps_the_law(crowd(8, 32, "park", seed))
+    assert keeps_the_law(on_grid(6, 36, "vanish", seed))
+    assert keeps_the_law(on_grid(8, 32, "park", seed))
 
 
 def test_robots_that_no_order_plans_get_plans() -> None:
-    instance = crowd(4, 14, "park", 1)
+    instance = on_grid(4, 14, "park", 1)
     assert plan(instance, Carp()).unplanned
     assert keeps_the_law(instance)
 
@@ -56,7 +51,7 @@ def test_two_robots_swap_at_a_far_pocket() -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_robots_on_a_tree_make_room_for_one_another(seed: int) -> None:
-    assert keeps_the_law(crowd(6, 10, "park", seed, map=0), steps=1000)
+    assert keeps_the_law(on_grid(6, 10, "park", seed, map=0), steps=1000)
 
 
 def test_robots_that_cannot_pass_get_no_plans() -> None:
@@ -68,9 +63,9 @@ def test_robots_that_cannot_pass_get_no_plans() -> None:
     [
         grid_instance(Grid(), Fleet(robots=2), Traits(capacity=Range(2, 2))),
         grid_instance(Grid(), Fleet(robots=2), Traits(duration=Range(2, 2))),
-        replace(crowd(3, 2, "park"), following="forbidden"),
-        replace(crowd(3, 1, "park"), robots=(replace(crowd(3, 1, "park").robots[0], release=1),)),
-        replace(crowd(3, 1, "park"), robots=(replace(crowd(3, 1, "park").robots[0], pace=2),)),
+        replace(on_grid(3, 2, "park"), following="forbidden"),
+        replace(on_grid(3, 1, "park"), robots=(replace(on_grid(3, 1, "park").robots[0], release=1),)),
+        replace(on_grid(3, 1, "park"), robots=(replace(on_grid(3, 1, "park").robots[0], pace=2),)),
     ],
 )
 def test_other_instances_are_left_to_other_planners(instance: Instance) -> None:
