@@ -6,6 +6,7 @@ import resource
 import subprocess
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import msgspec
@@ -204,16 +205,7 @@ def test_the_limit_of_a_query_is_that_of_carp_verify(beyond: bool) -> None:
 # ---- files ----
 
 
-def fifo(path: Path) -> None:
-    os.mkfifo(path)
-
-
-def directory(path: Path) -> None:
-    path.mkdir()
-
-
-def device(path: Path) -> None:
-    path.symlink_to("/dev/zero")
+TO_DEVICE = partial(Path.symlink_to, target="/dev/zero")
 
 
 def link(path: Path) -> None:
@@ -223,9 +215,9 @@ def link(path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["instance.json", "manifest.json", "beat.lrat"])
-@pytest.mark.parametrize("make", [fifo, directory, device, link])
+@pytest.mark.parametrize("make", [os.mkfifo, Path.mkdir, TO_DEVICE, link])
 def test_only_plain_files_of_a_proof_directory_are_opened(
-    make: Callable[[Path], None], name: str, tmp_path: Path
+    make: Callable[[Path], object], name: str, tmp_path: Path
 ) -> None:
     folder = tmp_path / "proof"
     folder.mkdir()
@@ -237,8 +229,8 @@ def test_only_plain_files_of_a_proof_directory_are_opened(
     assert "plain file" in answer["message"]
 
 
-@pytest.mark.parametrize("make", [fifo, directory, device])
-def test_only_plain_files_are_opened(make: Callable[[Path], None], tmp_path: Path) -> None:
+@pytest.mark.parametrize("make", [os.mkfifo, Path.mkdir, TO_DEVICE])
+def test_only_plain_files_are_opened(make: Callable[[Path], object], tmp_path: Path) -> None:
     make(tmp_path / "instance.json")
     answer = limited("check", tmp_path / "instance.json", tmp_path / "instance.json")
     assert (answer["verdict"], answer["rule"]) == ("bad input", "document/json")
