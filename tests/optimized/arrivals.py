@@ -25,7 +25,14 @@ CROWDED = Mix(
 )
 """As many robots as resources, or half as many."""
 ROOMS = Mix(
-    sizes=range(3, 7), robots=(8,), capacities=(1, 2, 2, 3), durations=(1, 2), releases=range(7), more=0, both_ways=True
+    sizes=range(3, 7),
+    robots=(8,),
+    capacities=(1, 2, 2, 3),
+    durations=(1, 2),
+    releases=range(7),
+    more=0,
+    both_ways=True,
+    followings=CROWDED.followings,
 )
 """More robots than resources, some with room for several, so that those behind one stand in its way."""
 CONVOY = Mix(sizes=range(6, 10), robots=(30,), capacities=(1,), durations=(1, 2), more=0, both_ways=True)

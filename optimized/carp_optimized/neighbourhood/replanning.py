@@ -220,12 +220,15 @@ def matters(state: State, record: int, k: int, target: int, entry: int, last_ent
 
 
 @compiled
-def lift(state: State, work: Work, first: int, size: int) -> None:
-    """Withdraw the plans from the position `first` on, but for those that have ended."""
+def lift(state: State, work: Work, first: int, size: int, now: int) -> None:
+    """Withdraw the plans from the position `first` on, but for those that keep no place from now on.
+
+    Where following is forbidden, a robot that has just left does.
+    """
     for position in range(first, size):
-        robot = int(work.outside[position])
-        if not work.ended[robot] and state.reserved[robot] != NONE:
-            withdraw(state, int(state.reserved[robot]))
+        record = int(state.reserved[work.outside[position]])
+        if record != NONE and state.records.leave[record] + state.gap > now:
+            withdraw(state, record)
 
 
 @compiled
@@ -235,6 +238,8 @@ def replan(state: State, work: Work, size: int, first: int, now: int, options: O
     A query takes no account of its own robot and those behind, whose plans stay reserved until they change or are run
     into; only where resources have room for several, whose windows do not tell robots apart, are they lifted first.
     A plan that still fits can be found again, so none that arrives later is.
+    A plan that has ended stays. Where following is forbidden, another may come too soon after it, and then the robot
+    has none.
     Robots before the position keep their plans; where `kept` is off they are replanned too, to the same effect, if
     their plans came from queries.
     """
@@ -242,23 +247,25 @@ def replan(state: State, work: Work, size: int, first: int, now: int, options: O
     lifted = False
     for position in range(first if options.kept else 0, size):
         robot = int(work.outside[position])
-        if work.ended[robot]:
-            continue
         record = int(work.held[robot])
+        if work.ended[robot]:
+            if state.reserved[robot] == NONE:
+                if not plan_fits(state, record):
+                    return leave_without_plans(state, work, position, size, now)
+                reserve(state, record)
+            continue
         still_fits = record != NONE and is_free(state, record, lifted)
         if record != NONE and stands(state, record, position < first, still_fits, options.unchanged):
             if lifted:
                 reserve(state, record)
             continue
         if several and not lifted:
-            lift(state, work, position, size)
+            lift(state, work, position, size, now)
             lifted = True
         latest = int(state.records.arrival[record]) if still_fits else NEVER
         plan = find_plan_by(state, robot, int(work.before[robot]), now, int(state.rank[robot]) - 1, latest)
         if plan == NONE:
-            lift(state, work, position, size)
-            leave_without_plan(work, position, size)
-            return position
+            return leave_without_plans(state, work, position, size, now)
         work.held[robot] = plan
         exchange_plan(state, robot, record, plan, lifted)
     if options.kept:
@@ -358,8 +365,10 @@ def stands(state: State, record: int, is_before: bool, still_fits: bool, skip_un
 
 
 @compiled
-def leave_without_plan(work: Work, position: int, size: int) -> None:
-    """The robot at the position and those behind it have no plan, but for those that have ended."""
+def leave_without_plans(state: State, work: Work, position: int, size: int, now: int) -> int:
+    """The robot at the position and those behind it have no plan, but for those that have ended; the position."""
+    lift(state, work, position, size, now)
     for k in range(position, size):
         if not work.ended[work.outside[k]]:
             work.held[work.outside[k]] = NONE
+    return position
