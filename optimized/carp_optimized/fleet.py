@@ -431,7 +431,10 @@ class PlannedFleet:
         followed = self._records if now > 0 else np.full(len(self._records), NONE, np.int32)
         costs = np.full(len(self._records), NONE, np.int64)
         self.call(lambda: passes.cost_each_alone(self._empty, able, followed, now, costs))
-        polish = room.no_polish(costs, self.state.graph.duration.size)
+        past = np.zeros(len(self._records), np.int32)
+        for robot in self._order if now > 0 else ():
+            past[robot] = sum(enter <= now for enter in self._columns(int(self._records[robot])).enters)
+        polish = room.no_polish(costs, past, self.state.graph.duration.size)
         polish.stream[0] = seed
         polish.counts[NOW] = now
         polish.counts[FORGOTTEN] = self._forgotten

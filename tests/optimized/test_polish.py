@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.optimized.arrivals import CROWDED, ROOMS, arrivals
 from tests.spec.making import worth
 
 import carp_optimized
@@ -31,6 +32,7 @@ from carp_spec import (
 )
 from carproof import polish
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
+from carproof.testing.random_instances import Mix
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
 SIZES = Sizes(resources=8, robots=12, groups=2)
@@ -176,6 +178,13 @@ def test_plans_alone_are_found_again_once_records_are_forgotten() -> None:
                 fleet.forget()
         made.append(fleet.plans)
     assert made[0] == made[1]
+
+
+@pytest.mark.parametrize(("number", "mix"), [(5428, CROWDED), (7553, ROOMS)])
+def test_plans_alone_go_on_from_what_robots_had_done_as_the_polish_began(number: int, mix: Mix) -> None:
+    """A plan made by the polish may begin with a move at this very tick, which a later plan may still change."""
+    question = arrivals(number, replace(mix, followings=("forbidden",)))
+    both(question.instance, question.by_reference(), 25, number, now=3)
 
 
 def test_robots_without_a_plan_get_one() -> None:

@@ -21,7 +21,7 @@ from carp_optimized.queries.search import find_plan_only
 from carp_optimized.queries.windows import reserve, withdraw
 from carp_optimized.state.arrays import BLOCK, MOST_MEMBERS, MOST_TURNS, NEVER, NONE, UNASKED, Polish, State
 from carp_optimized.state.natives import polish_at, state_at
-from carp_optimized.state.records import cost_of
+from carp_optimized.state.records import cost_of, first_visits
 
 QUEUED, TURN, MARKS, CHANCE, MARKED, NOW, FORGOTTEN = range(7)  # the counts
 SURE = 1 << 16  # a chance is in parts of this
@@ -133,10 +133,16 @@ def draw_in_way(state: State, polish: Polish, empty: State, kind: int, pivot: in
 
 @compiled
 def plan_alone(polish: Polish, empty: State, robot: int) -> int:
-    """The record of the plan that the robot has alone, made when it is first asked for: few are, in few rounds."""
+    """The record of the plan that the robot has alone, made when it is first asked for: few are, in few rounds.
+
+    It goes on from what the robot had done by now as the polish began. A plan made since may begin with a move at this
+    very tick, which a robot that follows it would have done.
+    """
     if polish.alone[robot] == UNASKED:
         now = int(polish.counts[NOW])
-        followed = int(polish.plans[robot]) if now > 0 else NONE
+        followed = NONE
+        if now > 0:
+            followed = first_visits(empty, int(polish.plans[robot]), int(polish.past[robot]))
         polish.alone[robot] = find_plan_only(empty, robot, followed, now, NEVER)
     return int(polish.alone[robot])
 

@@ -333,7 +333,7 @@ class Polish(NamedTuple):
     raise the total, how many resources are marked, the tick by which what robots have done is kept, and how often
     records had been forgotten when `alone` was filled. `stream[0]` is the state of the random numbers. `alone[robot]`
     is the record of the plan that the robot has alone, `UNASKED` at first, `NONE` if it has no path, and `least[robot]`
-    is its cost. `has_path` says how many have one.
+    is its cost. `has_path` says how many have one, and `past[robot]` how many visits it had entered at first.
     By resource: the span of a plan, `first` to `last`, where `mark` is the generation of the marks; `marked` lists
     these resources. The candidates are in order; those that are ranked have the rank whole + rest / ticks. By place in
     the neighbourhood: the members, their plans before and their new ones. `others` is scratch by robot.
@@ -346,6 +346,7 @@ class Polish(NamedTuple):
     alone: Ints
     least: Longs
     has_path: int
+    past: Ints
     mark: Longs
     first: Ints
     last: Ints

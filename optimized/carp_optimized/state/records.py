@@ -26,6 +26,19 @@ def start_record(state: State, robot: int, first: int, history: int) -> int:
 
 
 @compiled
+def first_visits(state: State, record: int, count: int) -> int:
+    """A record of so many first visits of a plan, or its own if it has no more; nobody leaves the last of them."""
+    records = state.records
+    if records.visits[record] <= count:
+        return record
+    begun = start_record(state, int(records.robot[record]), int(records.visits_at[record]), count)
+    records.leave[begun] = NEVER
+    records.expansions[begun] = UNKNOWN
+    close_record(state, begun)
+    return begun
+
+
+@compiled
 def write_record(state: State, record: int, last: int, expansions: int) -> None:
     """Finish a record with the path to the window `last` and with what the search has expanded, if that is noted."""
     records = state.records

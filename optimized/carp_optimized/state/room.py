@@ -205,7 +205,7 @@ def no_work(robots: int, members: int, sample: int) -> Work:
     )
 
 
-def no_polish(costs: Longs, resources: int) -> Polish:
+def no_polish(costs: Longs, past: Ints, resources: int) -> Polish:
     """Room to polish, with the costs of the plans that the robots have alone, `NONE` for one without."""
     has_path = costs != NONE
     return Polish(
@@ -216,6 +216,7 @@ def no_polish(costs: Longs, resources: int) -> Polish:
         alone=np.where(has_path, np.int32(UNASKED), np.int32(NONE)),
         least=np.maximum(costs, 0),
         has_path=int(has_path.sum()),
+        past=past,
         mark=_longs(resources),
         first=_nones(resources),
         last=_nones(resources),
