@@ -1,6 +1,7 @@
 """The experiments beside the first: what they count and compare."""
 
 from dataclasses import replace
+from pkgutil import resolve_name
 
 import msgspec
 import pytest
@@ -147,6 +148,12 @@ def test_what_a_polish_reaches_on_its_way_is_what_a_shorter_one_reaches() -> Non
         for length in lengths
     ]
     assert after[0] != after[-1]
+
+
+def test_the_functions_of_experiments_are_where_they_are_looked_for() -> None:
+    for each in EXPERIMENTS:
+        for name in (each.compute, each.summarise):
+            assert callable(resolve_name(f"carp_experiments.{name}"))
 
 
 @pytest.mark.parametrize("experiment", EXPERIMENTS, ids=lambda experiment: experiment.name)

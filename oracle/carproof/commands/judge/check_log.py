@@ -15,7 +15,7 @@ from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, naming, print_document, read_bytes, read_instance_file, shown
 from carproof.command_line.options import examples, json_option
 from carproof.command_line.output import show_violations
-from carproof.command_line.tables import print_line, print_table
+from carproof.command_line.tables import print_line, print_table, say
 from carproof.formats.logs import LOGS, read_log, read_log_on_map
 from carproof.formats.movingai import read_map
 
@@ -71,6 +71,7 @@ def command(
     if served:
         table = [(*others, "-" if leave is None else leave) for *others, leave in rows]
         print_table(["robot", "stop", "resource", "from", "to"], table, numbers=["stop", "from", "to"])
+        say()
     stops = sum(len(robot.stops) for robot in instance.robots)
     found = f"{len(rows)} of {stops} stops served, {verdict.done} of {len(instance.robots)} robots done"
     print_line(f"{'no rule is broken' if verdict.valid else 'INVALID'} by tick {log.now}: {found}")
