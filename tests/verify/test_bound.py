@@ -157,6 +157,15 @@ def test_prices_of_groups_find_what_those_of_resources_miss() -> None:
     assert without.bound == 6
 
 
+def test_a_price_of_a_group_is_worth_as_much_as_all_robots_in_it_pay() -> None:
+    lane = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),), groups=(Group("block", ("a", "b"), 2),))
+    instance = Instance(lane, (Robot("robot", "a", "b"),))
+    claim = priced(instance, scale=1, robots=(("robot", 1 + 3),), groups=(("block", 0, 3),))
+    assert verify_bound(instance, msgspec.structs.replace(claim, bound=-2)) == -2
+    with pytest.raises(Refusal, match="the bound must be -2"):
+        verify_bound(instance, msgspec.structs.replace(claim, bound=3))
+
+
 @pytest.mark.parametrize(
     ("prices", "rule"),
     [
