@@ -6,10 +6,16 @@ from typing import cast
 import pytest
 from tests.oracle.running import Run
 
+from carp_experiments.command import RECOMPUTED
+from carp_experiments.recomputed import AGAIN, AGAIN_IN_FEW
 from carp_experiments.store import Store, stored_rows
 
 SMALL = "--robots 5 --map 20 --assignments 2"
 pytestmark = pytest.mark.usefixtures("elsewhere")
+
+
+def test_the_command_names_the_experiments_that_can_be_computed_again() -> None:
+    assert {*RECOMPUTED} == {*AGAIN} == {*AGAIN_IN_FEW}
 
 
 @pytest.mark.parametrize(

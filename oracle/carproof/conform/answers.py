@@ -1,5 +1,6 @@
 """The answers of a program, decoded as strictly as documents."""
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -32,23 +33,23 @@ Answer: TypeAlias = QueryDocument | Solution | VerdictDocument | OptimumDocument
 Reply: TypeAlias = Answer | Skipped
 
 
-class Subject:
+class Subject(ABC):
     """A subject that answers cases, with its name in reports and the ops that it offers."""
 
     name = ""
     ops: tuple[str, ...] = ()
 
-    def start(self) -> None:
-        """Get ready; raises `Fault` if that fails."""
-
+    @abstractmethod
     def ask(self, case: Case, seconds: float | None = None) -> Reply:
         """Its reply, within this many seconds (`None`: the usual limit); raises `Fault` without a reply to judge."""
-        raise NotImplementedError
 
-    def finish(self) -> None:
+    def start(self) -> None:  # noqa: B027 - not all do
+        """Get ready; raises `Fault` if that fails."""
+
+    def finish(self) -> None:  # noqa: B027 - not all do
         """End; raises `Fault` if that fails."""
 
-    def kill(self) -> None:
+    def kill(self) -> None:  # noqa: B027 - not all do
         """Leave nothing behind."""
 
 
