@@ -88,7 +88,6 @@ def make_level_guide(  # noqa: C901 - one loop
     ticks = state.guides.ticks[slot]
     behind = state.search.nodes
     head = state.search.ending.nodes
-    alike = 1 if state.last_alike else 0
     widest = 1 if state.last_alike else state.longest
     step = int(state.guides.pace[destination]) * (state.longest if state.last_alike else 1)
     if min(behind.size, head.size) <= max(ticks.size, widest):
@@ -116,7 +115,7 @@ def make_level_guide(  # noqa: C901 - one loop
             for edge in range(int(graph.backward_first[resource]), int(graph.backward_first[resource + 1])):
                 source = int(graph.source[edge])
                 if ticks[source] == FURTHER:
-                    more = alike if alike > 0 else int(graph.duration[source])
+                    more = 1 if widest == 1 else int(graph.duration[source])
                     left += 1
                     if level + more <= last:
                         ticks[source] = (level + more) * step
