@@ -28,6 +28,7 @@ from carp_optimum.bound import Progress, lower_bound
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
 from carp_spec.model import AfterGoal, Group
 from carp_spec.plan_rules import plan_cost
+from carp_verify.bound.rules import LARGEST_TABLE
 from carp_verify.bound.tariff import Fees, Tariff
 from carp_verify.bound.verify import verify_bound
 from carp_verify.optimum.joint_search import least_total_cost
@@ -181,6 +182,15 @@ def test_wrong_prices_of_groups_are_refused(prices: tuple[tuple[str, int, int], 
     with pytest.raises(Refusal) as refused:
         verify_bound(instance, priced(instance, robots=(("robot", 0),), groups=prices))
     assert (refused.value.rule, refused.value.path) == (rule, f"$.groups[{len(prices) - 1}]")
+
+
+def test_prices_of_groups_for_too_many_resources_are_refused_before_they_are_looked_at() -> None:
+    cells = tuple(Resource(cell) for cell in range(1000))
+    instance = Instance(ResourceGraph(cells, (), groups=(Group("block", tuple(range(1000))),)), (Robot("robot", 0, 0),))
+    prices = (("block", -1, -1),) * (LARGEST_TABLE // 1000 + 1)
+    with pytest.raises(Refusal) as refused:
+        Tariff(instance, priced(instance, groups=prices))
+    assert (refused.value.rule, refused.value.path) == ("bound/size", "$.groups")
 
 
 def test_prices_end_early_where_ticks_are_many_and_the_bound_holds_all_the_same() -> None:
