@@ -110,15 +110,17 @@ def papers_within(drawn: Figure, lines: Known) -> Mapping[str, Sequence[tuple[in
     """The paper's values beside which there are values of ours: a small run has fewer maps, or robots."""
     xs = [x for line in lines.values() for x, _ in line]
     within = {
-        family: [(x, value) for x, value in points if min(xs) <= x <= max(xs)]
+        family: [(x, value) for x, value in points if min(xs, default=x + 1) <= x <= max(xs)]
         for family, points in drawn.papers.items()
     }
     return {family: points for family, points in within.items() if points}
 
 
 def end_where_values_do(plot: "Axes", lines: Known, papers: Sequence[float]) -> None:
-    """Let both axes begin and end with the values, intervals and the paper's values included."""
+    """Let both axes begin and end with the values, if there are any, intervals and the paper's values included."""
     points = [point for line in lines.values() for point in line]
+    if not points:
+        return
     first, last = min(x for x, _ in points), max(x for x, _ in points)
     plot.set_xlim(first, max(last, first + 1))
     plot.set_xticks(round_ticks(first, last))

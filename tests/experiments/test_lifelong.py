@@ -13,6 +13,7 @@ from carp_experiments.beyond.lifelong import (
 )
 from carp_experiments.paper.map_cases import MapCase
 from carp_experiments.paper.sorting import sorting_instance
+from carp_experiments.store import digest_of
 from carp_spec import Stop
 from carproof.generate import Fleet
 
@@ -32,6 +33,7 @@ def test_each_planner_serves_all_orders_at_each_rate() -> None:
     summary = msgspec.convert(lifelong_report([row], 8).summary, tuple[LifelongOf, ...])
     assert [(each.rate, each.planner) for each in summary] == [(rate, name) for rate in RATES for name in PLANNERS]
     assert all(each.taken.estimate > SERVICE for each in summary)
+    assert digest_of(row) == digest_of(CASE.run())
 
 
 def test_the_sorting_centre_is_laid_out_as_published_and_all_its_cells_can_be_left() -> None:

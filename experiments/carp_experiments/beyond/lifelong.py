@@ -14,7 +14,7 @@ from carp_experiments.beyond.streams import TICKS, middle_half, stream_instance,
 from carp_experiments.paper.map_cases import SORTING, MapCase, place_name, rows_by_map
 from carp_experiments.report import ExperimentReport, table_of
 from carp_experiments.statistics import Interval, mean_interval
-from carp_experiments.store import Row
+from carp_experiments.store import MEASURED, Row
 from carp_spec import Instance, Neighbourhood, Plan, RobotId, Stop, violations_of
 from carp_spec.permutations import splitmix64
 from carproof import Fleet
@@ -30,11 +30,10 @@ PLANNERS = {
 
 
 class Served(msgspec.Struct, frozen=True):
-    """The orders of a stream: the ticks in which the middle half is done, those in the system, and microseconds."""
+    """The orders of a stream: the ticks in which the middle half is done, and those in the system."""
 
     half: int
     taken: int
-    microseconds: int
 
 
 class LifelongRow(msgspec.Struct, frozen=True):
@@ -42,15 +41,23 @@ class LifelongRow(msgspec.Struct, frozen=True):
 
     map: int
     planners: dict[str, tuple[Served, ...]]
+    measured: dict[str, tuple[int, ...]]
 
 
 def lifelong_row(case: MapCase) -> Row:
-    """The streams of each planner."""
-    return {"planners": {name: [served(case, name, rate) for rate in RATES] for name in PLANNERS}}
+    """The streams of each planner, and their microseconds."""
+    streams = {name: [served(case, name, rate) for rate in RATES] for name in PLANNERS}
+    return {
+        "planners": {name: [orders for orders, _ in found] for name, found in streams.items()},
+        MEASURED: {name: [microseconds for _, microseconds in found] for name, found in streams.items()},
+    }
 
 
-def served(case: MapCase, name: str, rate: int) -> Served:
-    """Take up the orders of a stream; raises `AssertionError` if one has no plan, or plans break a rule."""
+def served(case: MapCase, name: str, rate: int) -> tuple[Served, int]:
+    """Take up the orders of a stream, and measure it in microseconds.
+
+    Raises `AssertionError` if an order has no plan, or plans break a rule.
+    """
     planner, rounds = PLANNERS[name]
     instance = order_instance(case, rate)
     fleet = Fleet(replace(instance, robots=()), planner=planner)
@@ -67,7 +74,7 @@ def served(case: MapCase, name: str, rate: int) -> Served:
     if broken or len(made) < len(instance.robots):
         raise AssertionError(broken)
     taken = sum(plan.visits[-1].enter - instance.robot[plan.robot].release for plan in made)
-    return Served(middle_half(made), taken, round(1e6 * seconds))
+    return Served(middle_half(made), taken), round(1e6 * seconds)
 
 
 def order_instance(case: MapCase, rate: int) -> Instance:
@@ -113,12 +120,13 @@ def lifelong_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
             len(found),
             throughput_of([each.half for each in found], robots),
             mean_interval([each.taken / robots for each in found]),
-            mean_interval([each.microseconds / robots / 1000 for each in found]),
+            mean_interval([each / robots / 1000 for each in microseconds]),
         )
         for map, stored in rows_by_map(rows, LifelongRow).items()
         for place, rate in enumerate(RATES)
         for planner in PLANNERS
         if (found := [row.planners[planner][place] for row in stored])
+        and (microseconds := [row.measured[planner][place] for row in stored])
     )
     title = (
         f"Streams of {robots} pick-and-drop orders, means with 95 % intervals: orders that come in {TICKS} ticks, "

@@ -248,9 +248,8 @@ class PriceSearch:
         """The delays of the robots' cheapest ways; 0 for one that has none."""
         requests, ways = self.market.requests, self.market.ways
         last = np.maximum(ways.length - 1, 0)
-        costs = np.where(ways.length > 0, ways.enter[np.arange(len(last)), last] - requests.release, 0)
-        delays: Longs = np.maximum(costs - (requests.earliest - requests.release), 0)
-        return delays
+        delays: Longs = np.where(ways.length > 0, ways.enter[np.arange(len(last)), last] - requests.earliest, 0)
+        return np.maximum(delays, 0)
 
     def _step(self, aim: int, bound: int) -> bool:
         """Change prices that prove this bound to be so much above the best; false if there is nothing to be gained."""

@@ -137,7 +137,7 @@ def draw_instance(draw: Draw, mix: Mix = SMALL) -> Instance:
         Robot(
             id,
             start,
-            goals[place] if goals else draw.one_of(ids),
+            goals[place % len(goals)] if goals else draw.one_of(ids),
             **_numbers(draw, mix, Robot, lambda: simple or draw.happens(2)),
         )
         for place, (id, start) in enumerate(zip(draw_ids(draw, count), starts, strict=False))
