@@ -19,7 +19,6 @@ from carp_optimized.state.arrays import (
     NONE,
     TOO_FAR,
     UNKNOWN,
-    UNREACHABLE,
     State,
 )
 from carp_optimized.state.records import cost_of, start_record, write_record
@@ -201,25 +200,6 @@ def stand(state: State, resource: int, enter: int, behind: int) -> int:
 
 
 @compiled
-def is_unseen(state: State, slot: int, expansions: int, latest: int) -> bool:
-    """Whether a resource that the guide does not reach might be entered with an f up to `latest`.
-
-    The guide reaches all that is as near to the goal as the resource from which it is entered, so f is no less than if
-    that were all that is left to go. With an f above that of the plan, its windows would have waited in the queue to
-    the end, and nothing else would have come of them.
-    """
-    graph = state.graph
-    ticks = state.guides.ticks[slot]
-    for k in range(expansions):
-        resource = int(state.search.expanded[k])
-        if int(state.search.ready[k]) + int(ticks[resource]) <= latest:
-            for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
-                if ticks[graph.target[edge]] == FURTHER:
-                    return True
-    return False
-
-
-@compiled
 def end_early(state: State, expansions: int, window: int, ready: int, key: int) -> int:
     """End a search in the window of the goal, as if it had been expanded next; the number of expansions."""
     search = state.search
@@ -247,7 +227,9 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
 ) -> int:
     """A* from the resource, entered at `enter` and left from `ready` on; the number of expansions, 0: no plan.
 
-    It is `FURTHER` where a window that the guide does not reach might have been expanded too: see `is_unseen`.
+    It is `FURTHER` where a window that the guide does not reach might be expanded next. The guide reaches all that is
+    as near to the goal as the resource from which it is entered, so the f of that window is no less than if that were
+    all that is left to go. With an f above those that are expanded, it would have waited in the queue.
 
     A window of a larger f than `latest` is in no plan that arrives by then, nor is one expanded before the goal of such
     a plan is: no window of that kind is put into the queue, and the windows expanded stay the same.
@@ -306,6 +288,7 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
         return 0
     size = 0
     expansions = 0
+    unseen = NO_LIMIT
     beyond = False
     while True:
         if size > 0 and keys[0] < best_key:
@@ -327,20 +310,21 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
         enter = label - int(reached[node])
         if key != (enter << 32) + toll_of(state, slot, resource):
             continue  # entered earlier since this entry was made
+        next_f = key >> 32
+        if next_f >= unseen:
+            return FURTHER
         if expansions >= next_try:
             next_try = expansions + expansions // 2
-            next_f = key >> 32
-            if not (beyond and is_unseen(state, slot, expansions, next_f)):
-                looks = FEWEST_LOOKS + expansions // 8
-                end = end_from(state, robot, slot, goal_window, own_slot, next_f, min(latest, LARGEST), looks)
-                if end == FURTHER:
-                    return FURTHER
-                if end == ENDED:
-                    state.search.goal[0] = goal_window
-                    state.search.expansions[0] = expansions
-                    return expansions
+            looks = FEWEST_LOOKS + expansions // 8
+            end = end_from(state, robot, slot, goal_window, own_slot, next_f, min(latest, LARGEST), looks)
+            if end == FURTHER:
+                return FURTHER
+            if end == ENDED:
+                state.search.goal[0] = goal_window
+                state.search.expansions[0] = expansions
+                return expansions
         if expansions >= next_look:
-            next_look = look_back(state, robot, slot, goal_window, key >> 32, latest, expansions)
+            next_look = look_back(state, robot, slot, goal_window, next_f, latest, expansions)
             if next_look == CUT_OFF:
                 return 0
         last = node if counts_all else end_of_run(state, node, behind)
@@ -354,8 +338,6 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
         state.search.popped[expansions] = key
         expansions += 1
         if resource == goal and (end == NEVER if parks else not (overstayed and node == STANDING)):
-            if beyond and is_unseen(state, slot, expansions, enter):
-                return FURTHER
             state.search.goal[0] = node
             state.search.expansions[0] = expansions
             return expansions
@@ -365,7 +347,9 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
             target = int(graph.target[edge])
             toll = toll_of(state, slot, target)
             if toll < 0:
-                beyond |= toll != UNREACHABLE
+                if toll == FURTHER:
+                    unseen = min(unseen, ready + next_f - enter)
+                beyond |= toll == TOO_FAR
                 continue
             if is_bounded and (ready << 32) + toll > largest_key:
                 continue
@@ -417,8 +401,6 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
                 reached[window] = label - entry
                 parent[window] = node
                 if until == NEVER and target == last_goal and entry == windows.start[window]:
-                    if beyond and is_unseen(state, slot, expansions, enter + (toll_of(state, slot, resource) >> 32)):
-                        return FURTHER
                     return end_early(state, expansions, window, entry + need, key)
                 if key < best_key:
                     if best != NONE:
@@ -429,7 +411,7 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
                 else:
                     push(keys, nodes, size, key, window)
                     size += 1
-    if beyond and is_unseen(state, slot, expansions, latest):
+    if unseen <= latest:
         return FURTHER
     if beyond and not is_bounded:
         raise TicksExhausted
