@@ -23,7 +23,7 @@ from carp_spec.shapes import require_shape
 from carproof.engines import compile_what_is_kept, engine_named, fleet_of
 from carproof.execution.delays import until
 from carproof.input_rules import Code
-from carproof.judging.audit import Audit, audit_changes, in_order
+from carproof.judging.audit import Audit, audit_in_order, in_order
 
 if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet
@@ -398,9 +398,9 @@ class Fleet:
 
 def _audited(known: _Known, changed: Sequence[PlanColumns], before: Sequence[Plan]) -> Audit:
     sound, engine = sound_solution(known.instance, known.solution), engine_named("optimized")
-    return audit_changes(
-        known.instance, sound, engine, {plan.robot for plan in changed}, before, known.from_tick(known.now)
-    )
+    plans = {plan.robot: plan for plan in before}
+    followed = {each.robot: plans.get(each.robot) for each in changed}
+    return audit_in_order(known.instance, sound, engine, followed=followed, now=known.from_tick(known.now))
 
 
 def _is_right(robot: Robot, places: Container[ResourceId]) -> bool:

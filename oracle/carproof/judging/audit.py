@@ -6,7 +6,7 @@ fault. An audit does not judge the choice between plans that arrive at the same 
 without a plan.
 """
 
-from collections.abc import Callable, Container, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 import msgspec
@@ -114,47 +114,32 @@ class Auditor(Beside):
         """Note that a plan is late."""
         self.audit.late.append(Late(plan, earlier, tuple(self._committed)))
 
-    def look_at(self, plan: Plan, followed: Plan | None = None, now: int = 0) -> None:
-        """Certify a plan, or note that it is late."""
-        earlier = self.earlier_plan(plan, followed, now)
-        if earlier is not None:
-            self.is_late(plan, earlier)
 
-
-def audit_in_order(
+def audit_in_order(  # noqa: PLR0913 - how long, and what robots have followed until when
     instance: Instance,
     solution: Solution,
     engine: Engine,
     advance: Callable[[], None] = lambda: None,
     goes_on: Callable[[], bool] = lambda: True,
+    *,
+    followed: Mapping[RobotId, Plan | None] | None = None,
+    now: int = 0,
 ) -> Audit:
-    """Audit a solution that breaks no rule in its planning order, as long as there is time."""
+    """Audit a solution that breaks no rule in its planning order, as long as there is time.
+
+    With `followed`, only the plans of its robots, each with the plan that the robot has followed until now.
+    """
     auditor = Auditor(instance, engine)
     for plan in in_order(solution):
         if not goes_on():
             auditor.audit.undecided.append(plan)
             continue
-        auditor.look_at(plan)
+        if followed is None or plan.robot in followed:
+            earlier = auditor.earlier_plan(plan, (followed or {}).get(plan.robot), now)
+            if earlier is not None:
+                auditor.is_late(plan, earlier)
         auditor.commit(plan)
         advance()
-    return auditor.audit
-
-
-def audit_changes(
-    instance: Instance,
-    solution: Solution,
-    engine: Engine,
-    changed: Container[RobotId],
-    before: Sequence[Plan],
-    now: int,
-) -> Audit:
-    """Audit, in its planning order, the changed plans of robots that have followed the plans before until now."""
-    auditor = Auditor(instance, engine)
-    followed = {plan.robot: plan for plan in before}
-    for plan in in_order(solution):
-        if plan.robot in changed:
-            auditor.look_at(plan, followed.get(plan.robot), now)
-        auditor.commit(plan)
     return auditor.audit
 
 
