@@ -105,9 +105,11 @@ def give_way(
     least: int | None = None
     while True:
         fixed = [plan if plan.robot in kept else history(instance, plan, now) for plan in others]
-        first = engine.find(instance, [*fixed, *own], robot, now) if route is None else Plan(robot, tuple(route))
-        if route is not None:
-            refuse_route(instance, fixed, own, Plan(robot, tuple(route)), now)
+        if route is None:
+            first = engine.find(instance, [*fixed, *own], robot, now)
+        else:
+            first = Plan(robot, tuple(route))
+            refuse_route(instance, fixed, own, first, now)
         if first is None:
             return GivenWay(robot, None, None, least, {}, tuple(stuck))
         arrival = first.visits[-1].enter
@@ -153,7 +155,6 @@ def plan_around(
         tried.append(moving)
         plans = {robot: plan for robot, plan in before.items() if robot not in moving}
         waiting = [history(instance, before[robot], now) for robot in moving]
-        failed: RobotId | None = None
         for robot in moving:
             waiting = waiting[1:]
             plan = engine.find(instance, [first, *plans.values(), *waiting, before[robot]], robot, now)
@@ -161,7 +162,7 @@ def plan_around(
                 failed = robot
                 break
             plans[robot] = plan
-        if failed is None:
+        else:
             return {robot: plans[robot] for robot in before}
         if failed in kept:
             return failed
