@@ -10,7 +10,7 @@ from carp_spec.rule import is_between
 from carp_spec.shapes import require_each
 from carp_verify.release.rules import Grant
 from carproof.execution.delays import Delay
-from carproof.execution.releasing import MOST_STATES, GrantsVerdict, Limit, Released, Releasing
+from carproof.execution.releasing import MOST_STATES, GrantsVerdict, Released, Releasing
 from carproof.execution.simulation import DRIVERS, Driver, Execution, delays_are_right
 from carproof.execution.simulation import execute as executed
 from carproof.requests import deadline
@@ -52,7 +52,7 @@ def release(
     situation = Releasing(instance, solution, trace)
     for robot in beyond:
         require_robot(instance, robot, "$.beyond")
-    return situation.released([robot for robot in beyond if robot in situation.plans], limit)
+    return situation.released([robot for robot in beyond if robot in situation.plans], *limit)
 
 
 def check_grants(
@@ -70,13 +70,12 @@ def check_grants(
     """
     limit = _limit(states, seconds)
     require_each(grants, Grant, "$.grants")
-    return Releasing(instance, solution, trace).check(grants, limit)
+    return Releasing(instance, solution, trace).check(grants, *limit)
 
 
-def _limit(states: int | None, seconds: float | None) -> Limit:
-    """The limit of searches that begin now."""
+def _limit(states: int | None, seconds: float | None) -> tuple[float, float]:
+    """The states of each search, and when all must have ended, if they begin now."""
     if states is not None and not is_between(states, 1):
         message = f"it must be a whole number of at least 1, not {states!r}"
         raise Refusal("option", "$.states", "request/limit", message)
-    until = deadline(seconds)
-    return Limit(states or (MOST_STATES if seconds is None else inf), until)
+    return states or (MOST_STATES if seconds is None else inf), deadline(seconds)

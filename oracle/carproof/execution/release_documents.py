@@ -1,11 +1,10 @@
 """The documents of grants, and of the answers about them."""
 
-from collections.abc import Sequence
-
 import msgspec
 
 from carp_spec import Instance, ResourceId, RobotId
 from carp_spec.documents.decoding import decode
+from carp_spec.documents.fields import all_converted
 from carp_spec.documents.grants import GRANTS_FORMAT, GrantDocument, GrantsDocument
 from carp_verify.release.rules import Grant
 from carp_verify.release.verify import Finish, Overfull, Stuck
@@ -58,12 +57,7 @@ class GrantsVerdictDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=T
 def read_grants(data: bytes) -> tuple[Grant, ...]:
     """Read a document of grants; raises `Refusal` if it is malformed."""
     document = decode(data, GrantsDocument, GRANTS_FORMAT)
-    return tuple(Grant(each.robot, each.resources) for each in document.grants)
-
-
-def grants_of(grants: Sequence[Grant]) -> tuple[GrantDocument, ...]:
-    """The grants in a document."""
-    return tuple(GrantDocument(each.robot, each.resources) for each in grants)
+    return all_converted(document.grants, Grant)
 
 
 def released_document(released: Released) -> ReleaseDocument:
@@ -72,7 +66,7 @@ def released_document(released: Released) -> ReleaseDocument:
         BeyondDocument(each.grant.robot, each.grant.resources, each.next, each.answer, each.robots)
         for each in released.beyond
     )
-    return ReleaseDocument(released.follows, grants_of(released.in_order), tuple(beyond))
+    return ReleaseDocument(released.follows, all_converted(released.in_order, GrantDocument), tuple(beyond))
 
 
 def grants_verdict_document(instance: Instance, verdict: GrantsVerdict) -> GrantsVerdictDocument:
@@ -82,8 +76,7 @@ def grants_verdict_document(instance: Instance, verdict: GrantsVerdict) -> Grant
         return GrantsVerdictDocument(*head, moves=witness.moves)
     if isinstance(witness, Overfull):
         place = instance.graph.constraints[witness.constraint]
-        of = {"robots": witness.robots, "resources": place.resources, "capacity": place.capacity}
-        return msgspec.convert({"answer": head[0], "by_order": head[1], **of}, GrantsVerdictDocument)
+        return GrantsVerdictDocument(*head, robots=witness.robots, resources=place.resources, capacity=place.capacity)
     if isinstance(witness, Stuck):
         return GrantsVerdictDocument(*head, robots=witness.robots, places=tuple(sorted(witness.states)))
     return GrantsVerdictDocument(*head)

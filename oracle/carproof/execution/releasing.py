@@ -29,26 +29,10 @@ SHARE = 3
 """A search has one of this many parts of the time; to check its witness and to write it take no more than it does."""
 
 
-@dataclass(frozen=True, slots=True)
-class Limit:
-    """The most states that each search looks at, and the tick of `perf_counter` at which all must have ended."""
-
-    states: float = MOST_STATES
-    until: float = inf
-
-    @property
-    def is_over(self) -> bool:
-        """Whether the time is over."""
-        return perf_counter() >= self.until
-
-    def part(self, count: int) -> "Limit":
-        """A limit for one of so many parts of the time that is left."""
-        now = perf_counter()
-        return Limit(self.states, now + (self.until - now) / count)
-
-    def budget(self) -> Budget:
-        """The budget of a search that begins now."""
-        return Budget(self.states, self.part(SHARE).until)
+def end_of_part(until: float, parts: int) -> float:
+    """When the first of so many equal parts of the time until then is over."""
+    now = perf_counter()
+    return now + (until - now) / parts
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,13 +161,13 @@ class Releasing:
         has_ended = all(self.ways.has_ended(robot, place) for robot, place in state.items())
         return Finish(tuple(moves)) if has_ended else None
 
-    def check(self, grants: Sequence[Grant], limit: Limit) -> GrantsVerdict:
-        """Whether grants are safe, as far as that can be told within the limit."""
+    def check(self, grants: Sequence[Grant], states: float, until: float) -> GrantsVerdict:
+        """Whether grants are safe, as far as searches of so many states tell until then, by `perf_counter`."""
         for fault in grants_are_next(self.instance, self.solution.plans, self.trace, grants):
             raise Refusal("document", fault.path, fault.rule, fault.message)
         granted = {**self.now, **{each.robot: self.now[each.robot] + len(each.resources) for each in grants}}
         try:
-            witness = self._witness(granted, limit.budget())
+            witness = self._witness(granted, Budget(states, end_of_part(until, SHARE)))
         except CutOffError:
             return GrantsVerdict(None)
         if not answer_is_shown(self.instance, self.solution.plans, self.now, granted, witness):
@@ -221,24 +205,24 @@ class Releasing:
         for robot in ahead:
             yield from ((robot, other) for other in rest if other != robot and not rest[robot].isdisjoint(rest[other]))
 
-    def released(self, beyond: Sequence[RobotId], limit: Limit) -> Released:
+    def released(self, beyond: Sequence[RobotId], states: float, until: float) -> Released:
         """What the planned order grants, and for these robots what each may be granted alone."""
         in_order = tuple(self._grant(robot, place) for robot, place in self.in_order.items())
         parts = range(len(beyond), 0, -1)
-        alone = (self._beyond(robot, limit.part(part)) for part, robot in zip(parts, beyond, strict=True))
+        alone = (self._beyond(each, states, end_of_part(until, part)) for part, each in zip(parts, beyond, strict=True))
         return Released(self.follows, in_order, tuple(alone))
 
     def _grant(self, robot: RobotId, last: int) -> Grant:
         visits = self.plans[robot].visits[self.now[robot] + 1 : last + 1]
         return Grant(robot, tuple(visit.resource for visit in visits))
 
-    def _beyond(self, robot: RobotId, limit: Limit) -> Beyond:
+    def _beyond(self, robot: RobotId, states: float, until: float) -> Beyond:
         best = self._grant(robot, self.in_order[robot])
         if self.instance.robot[robot].release > self.trace.now:
             return Beyond(best)
         for last in range(self.in_order[robot] + 1, len(self.plans[robot].visits)):
             grant = self._grant(robot, last)
-            verdict = GrantsVerdict(None) if limit.is_over else self.check([grant], limit)
+            verdict = GrantsVerdict(None) if perf_counter() >= until else self.check([grant], states, until)
             if verdict.answer != "safe":
                 witness = verdict.witness
                 robots = () if witness is None or isinstance(witness, Finish) else witness.robots
