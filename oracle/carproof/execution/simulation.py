@@ -1,7 +1,7 @@
 """Executions of solutions: delays, drivers of robots, and results."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import Literal, TypeAlias, get_args
 
@@ -9,6 +9,7 @@ import msgspec
 
 from carp_reference.execution import Order, order_of
 from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Violation, violations_of
+from carp_spec.documents.fields import all_converted
 from carp_spec.execution.dependencies import Node, shortest_cycle
 from carp_spec.execution.traces import Trace
 from carp_spec.permutations import splitmix64
@@ -203,9 +204,7 @@ def dependencies_document(order: Order, late: Mapping[RobotId, int] | None) -> D
         acyclic=not edges,
         cycle=cycle,
         visits=tuple(visits),
-        edges=tuple(
-            DependencyDocument(each.kind, each.before, each.after, each.ticks, each.resource) for each in order.edges
-        ),
+        edges=all_converted(order.edges, DependencyDocument),
         late=None if late is None else tuple(late.items()),
         collision=None if smallest is None else tuple((each.robot, each.visit, each.ticks) for each in smallest),
     )
@@ -227,24 +226,13 @@ def dot(order: Order) -> str:
     return "\n".join([*lines, "}", ""])
 
 
-class ExecutionDocument(msgspec.Struct, frozen=True):
-    """The result of a driver with a solution: see `Execution`. `late` are pairs of a robot and ticks."""
-
-    driver: str
-    delays: tuple[tuple[RobotId, int, int], ...]
-    late: tuple[tuple[RobotId, int], ...]
-    collisions: tuple[str, ...]
-    standing: tuple[RobotId, ...]
-    switches: int
-
-
-def execution_document(execution: Execution) -> ExecutionDocument:
-    """The document of an execution, but for its trace."""
-    return ExecutionDocument(
-        execution.driver,
-        tuple((each.robot, each.visit, each.ticks) for each in execution.delays),
-        tuple(execution.late.items()),
-        tuple(map(str, execution.collisions)),
-        execution.standing,
-        execution.switches,
-    )
+def execution_document(execution: Execution) -> dict[str, object]:
+    """The document of an execution, but for its trace; `late` are pairs of a robot and ticks."""
+    return {
+        "driver": execution.driver,
+        "delays": [astuple(delay) for delay in execution.delays],
+        "late": [*execution.late.items()],
+        "collisions": [str(each) for each in execution.collisions],
+        "standing": execution.standing,
+        "switches": execution.switches,
+    }
