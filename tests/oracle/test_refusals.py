@@ -43,7 +43,30 @@ SLOW = "$.graph.nodes[0].duration: "
 CAPACITY = "$.plans[0].visits[1]: resource b in [1,2): robots r1, r2 (capacity 1) [joint/capacity]"
 NO_FORMAT = "$.format: the format must be carproof-instance/1"
 MAPS = "--map m.map --scen m.scen"
-USAGE = (
+LAYOUTS = {
+    "plant.xml": '<?xml version="1.0"?>\n<model version="0.0.4" name="Plant">\n<point name="P1"/>\n</model>\n',
+    "office.building.yaml": "levels:\n  L1:\n    lanes:\n      - [0, 1]\n    vertices:\n      - [1.0, 2.0, 0, a]\n",
+    "graph.yaml": "building_name: b\nlevels:\n  L1:\n    lanes:\n    - [0, 1]\n    vertices:\n    - [1.0, 2.0]\n",
+    "lif.json": '{"metaInformation": {}, "layouts": [{"layoutId": "1", "nodes": [], "edges": []}]}',
+    "site.json": '{"type": "FeatureCollection", "features": []}',
+    "room.yaml": "image: room.pgm\nresolution: 0.05\norigin: [0.0, 0.0, 0.0]\n",
+}
+KINDS = {
+    "plant.xml": "an openTCS plant model",
+    "office.building.yaml": "an Open-RMF building",
+    "graph.yaml": "navigation graph",
+    "lif.json": "LIF",
+    "site.json": "GeoJSON",
+    "room.yaml": "a map for ROS",
+}
+ASSIGN = "assign town.json plans.json --now 1 -o next.json --instance after.json"
+OTHERS = tuple(
+    (command.replace("FILE", file), f"{file}: this is ", kind, "carproof convert")
+    for file, kind in KINDS.items()
+    for command in ("plan FILE", "check FILE plans.json", "check town.json FILE", "convert FILE m.scen")
+)
+REFUSED = (
+    # commands and options
     ("chek", "No such command 'chek'", "Did you mean check?"),
     ("zzz", "No such command 'zzz'", "carproof --help lists them"),
     ("check", "Missing argument"),
@@ -54,8 +77,7 @@ USAGE = (
     ("bound town.json --seconds 0", "--seconds"),
     ("optimum town.json --limit 0", "--limit"),
     ("gap town.json --limit x", "--limit"),
-)
-FILES = (
+    # files
     ("plan comma.json", "comma.json: $: ", "line 2, column 9", "[document/json]"),
     ("plan stays.json", "$.after_goal: ", "'stay'", "it must be park or vanish [document/shape]"),
     ("plan verdict.json", f"verdict.json: {NO_FORMAT}, and is carproof-verdict/1 [document/format]"),
@@ -69,8 +91,7 @@ FILES = (
     ("plan town.json -o /proc/x", "/proc/x: it "),
     ("check - -", "Only one of the files can be standard input."),
     ("demo town.json", "town.json"),
-)
-PLANNING = (
+    # planners and robots
     ("plan town.json --planner best", "--planner: there is no planner 'best'; the planners are carp, shuffled"),
     ("plan town.json --planner neighborhood", "did you mean neighbourhood? The planners are carp, shuffled"),
     ("plan town.json --planner carp --m 3", "--m: the planner carp has no option m; it has none"),
@@ -91,16 +112,14 @@ PLANNING = (
     ("plan town.json --seconds 1 --planner carp", "[planner/options]"),
     ("plan town.json --iterations 1 --m 3", "[planner/options]"),
     ("plan town.json --seconds 1 --engine reference", "[planner/options]"),
-)
-ASSIGNING = (
-    ("r2 d:-1 a", "Error: STOP 1: the service must be a whole number of at least 0, not -1 [instance/stops]"),
-    ("r2 d b:x", "Error: STOP 2: it must be the id of a resource, and 'b:x' is not [instance/stops]"),
-    ("r2 d:9999999999", "Error: STOP: the services must be at most 1073741823 together, and are more; "),
-    ("r9 d", "Error: ROBOT: the instance must have the robot, and has no 'r9' [request/robot]"),
-    ("r2 d -o ./after.json", "another option writes there too"),
-    ("r2 d -o - --instance -", "another option writes there too"),
-)
-EXECUTING = (
+    # further stops
+    (f"{ASSIGN} r2 d:-1 a", "Error: STOP 1: the service must be a whole number of at least 0, not -1 [instance/stops]"),
+    (f"{ASSIGN} r2 d b:x", "Error: STOP 2: it must be the id of a resource, and 'b:x' is not [instance/stops]"),
+    (f"{ASSIGN} r2 d:9999999999", "Error: STOP: the services must be at most 1073741823 together, and are more; "),
+    (f"{ASSIGN} r9 d", "Error: ROBOT: the instance must have the robot, and has no 'r9' [request/robot]"),
+    (f"{ASSIGN} r2 d -o ./after.json", "another option writes there too"),
+    (f"{ASSIGN} r2 d -o - --instance -", "another option writes there too"),
+    # executions
     ("execution retime east.json east-plans.json trace-early.json", "trace-early.json: $.", "[trace/ticks]"),
     ("execution retime east.json east-plans.json east-plans.json", "east-plans.json: $.", "[document/format]"),
     ("execution simulate east.json east-plans.json --delays=x", "[request/delays]"),
@@ -118,8 +137,7 @@ EXECUTING = (
         "execution simulate east.json east-plans.json --driver order --trace t.json --now -1",
         "--now: it must be a whole",
     ),
-)
-PROOFS = (
+    # bounds and proofs
     ("audit town.json unordered.json", "[solution/order]"),
     ("bound town.json --plans east-plans.json", "plans to compare with must break no rule"),
     ("bound --plans plans.json", "Give INSTANCE, or --map and --scen."),
@@ -131,8 +149,7 @@ PROOFS = (
     ("verify town.json bound-scale.json", "bound-scale.json: $.scale: ", "[document/shape]"),
     ("optimum town.json --proof town.json", "town.json"),
     ("verify nowhere", "nowhere"),
-)
-MAKING = (
+    # instances and pictures
     ("generate grid --width 0", "--width: it must be between 1 and 1073741824, not 0 [generate/options]"),
     ("generate grid --width 501 --height 500", "--width: the map must have at most 250000 resources"),
     ("generate grid --robots 401", "--robots: 401 robots need as many distinct starts, and the map has 400"),
@@ -147,8 +164,7 @@ MAKING = (
     ("view town.json broken.json -o x.pdf", ".html", ".svg"),
     ("view town.json broken.json -o x.svg", ".html", "--at", "--chart"),
     ("view town.json broken.json --at 1 -o x.html", ".svg"),
-)
-FORMATS = (
+    # formats
     ("check m.json", "Give INSTANCE and SOLUTION, or --map, --scen and SOLUTION."),
     (f"check m.json lacam {MAPS}", "Give INSTANCE and SOLUTION"),
     ("check lacam --map m.map", "--map and --scen go together, and --agents with them."),
@@ -161,8 +177,7 @@ FORMATS = (
     ),
     ("convert m.map m.scen --agents 3", "m.scen:3: 3 agents are asked for, and the scenario has 2"),
     ("convert - m.scen", "Error: standard input:1: "),
-)
-CONFORM = (
+    # programs
     ("conform --one-shot -- cat {map}", "must hold {instance}, or {map} and {scen}"),
     ("conform --from lacam -- cat", "--from concerns the files that programs write with --one-shot"),
     ("conform --one-shot --level exact -- cat {map} {scen}", "--level must be one of sound, complete, optimal"),
@@ -170,8 +185,7 @@ CONFORM = (
     ("conform --executor --level complete -- cat", "Of an executor --level must be one of sound, exact."),
     ("conform --executor --one-shot -- cat", "--executor can be combined with neither --one-shot nor --kernel."),
     ("conform --executor --kernel -- cat", "--executor can be combined with neither --one-shot nor --kernel."),
-)
-SIZES = (
+    # sizes and times
     ("convert plant.xml --tick 0s", "--tick: it must be a number above 0"),
     ("convert plant.xml --speed 3kn", "--speed: it must be a number above 0"),
     ("convert plant.xml --footprint 0x3mm", "--footprint: it must be a length and a width"),
@@ -183,33 +197,11 @@ SIZES = (
     ("check town.json plans.json --footprint 450mm --cells 0.5mm", "--cells"),
     ("release town.json plans.json trace-early.json --seconds 0", "--seconds"),
     ("audit town.json plans.json --seconds nan", "--seconds"),
-)
-EXPERIMENTS = (
+    # experiments
     ("experiment quality --robots 500 --store st", "500 robots need as many distinct starts, and the map has 400"),
     ("experiment quality --backend dask --store st", "needs the address of its --scheduler"),
-)
-LAYOUTS = {
-    "plant.xml": '<?xml version="1.0"?>\n<model version="0.0.4" name="Plant">\n<point name="P1"/>\n</model>\n',
-    "office.building.yaml": "levels:\n  L1:\n    lanes:\n      - [0, 1]\n    vertices:\n      - [1.0, 2.0, 0, a]\n",
-    "graph.yaml": "building_name: b\nlevels:\n  L1:\n    lanes:\n    - [0, 1]\n    vertices:\n    - [1.0, 2.0]\n",
-    "lif.json": '{"metaInformation": {}, "layouts": [{"layoutId": "1", "nodes": [], "edges": []}]}',
-    "site.json": '{"type": "FeatureCollection", "features": []}',
-    "room.yaml": "image: room.pgm\nresolution: 0.05\norigin: [0.0, 0.0, 0.0]\n",
-}
-KINDS = {
-    "plant.xml": "an openTCS plant model",
-    "office.building.yaml": "an Open-RMF building",
-    "graph.yaml": "navigation graph",
-    "lif.json": "LIF",
-    "site.json": "GeoJSON",
-    "room.yaml": "a map for ROS",
-}
-ASSIGN = "assign town.json plans.json --now 1 -o next.json --instance after.json"
-ASSIGNMENTS = tuple((f"{ASSIGN} {words}", message) for words, message in ASSIGNING)
-OTHERS = tuple(
-    (command.replace("FILE", file), f"{file}: this is ", kind, "carproof convert")
-    for file, kind in KINDS.items()
-    for command in ("plan FILE", "check FILE plans.json", "check town.json FILE", "convert FILE m.scen")
+    # layouts in place of instances
+    *OTHERS,
 )
 WRITES = ("plan", "polish", "retime", "give-way", "view")
 
@@ -227,25 +219,7 @@ def many_documents(folder: Path) -> Path:
 
 @pytest.mark.parametrize(
     ("command", "messages"),
-    [
-        pytest.param(command, messages, id=f"{command}-{number}")
-        for number, (command, *messages) in enumerate(
-            (
-                *USAGE,
-                *FILES,
-                *OTHERS,
-                *PLANNING,
-                *ASSIGNMENTS,
-                *EXECUTING,
-                *PROOFS,
-                *MAKING,
-                *FORMATS,
-                *CONFORM,
-                *SIZES,
-                *EXPERIMENTS,
-            )
-        )
-    ],
+    [pytest.param(command, messages, id=f"{command}-{number}") for number, (command, *messages) in enumerate(REFUSED)],
 )
 def test_it_is_refused_in_one_sentence_and_nothing_is_written(
     carproof: Run, many: Path, command: str, messages: list[str]
