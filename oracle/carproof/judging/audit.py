@@ -59,13 +59,13 @@ class Beside:
         self._instance = instance
         self._certifier = engine.certifier(instance)
         self._traffic = Traffic(instance)
-        self._committed: list[Plan] = []
+        self.committed: list[Plan] = []
 
     def commit(self, plan: Plan) -> None:
         """Commit a plan; the next ones are compared beside it."""
         self._certifier.commit([plan])
         self._traffic.commit(plan)
-        self._committed.append(plan)
+        self.committed.append(plan)
 
     def has_room(self, plan: Plan) -> bool:
         """Whether the committed plans leave room for the plan."""
@@ -91,28 +91,17 @@ class Beside:
             raise ContradictionError(message) from refusal
 
 
-class Auditor(Beside):
-    """Compares plans with the best ones beside those committed so far."""
-
-    def __init__(self, instance: Instance, engine: Engine) -> None:
-        super().__init__(instance, engine)
-        self.audit = Audit()
-
-    def earlier_plan(self, plan: Plan, followed: Plan | None = None, now: int = 0) -> Plan | None:
-        """A plan that arrives earlier, of a robot that has followed a plan until now; without one this is certified."""
-        best, certificate = self.best(plan.robot, followed, now)
-        if best is not None and best.visits[-1].enter < plan.visits[-1].enter:
-            return best
-        if best is None or best.visits[-1].enter > plan.visits[-1].enter:
-            raise ContradictionError(f"robot {plan.robot} has a plan that was not found")
-        self.require(certificate, followed)
-        self.audit.certified.append(plan)
-        self.audit.certificates.append(msgspec.Raw(msgspec.json.encode(certificate)))
-        return None
-
-    def is_late(self, plan: Plan, earlier: Plan) -> None:
-        """Note that a plan is late."""
-        self.audit.late.append(Late(plan, earlier, tuple(self._committed)))
+def _earlier_plan(beside: Beside, audit: Audit, plan: Plan, followed: Plan | None = None, now: int = 0) -> Plan | None:
+    """A plan that arrives earlier, of a robot that has followed a plan until now; without one this is certified."""
+    best, certificate = beside.best(plan.robot, followed, now)
+    if best is not None and best.visits[-1].enter < plan.visits[-1].enter:
+        return best
+    if best is None or best.visits[-1].enter > plan.visits[-1].enter:
+        raise ContradictionError(f"robot {plan.robot} has a plan that was not found")
+    beside.require(certificate, followed)
+    audit.certified.append(plan)
+    audit.certificates.append(msgspec.Raw(msgspec.json.encode(certificate)))
+    return None
 
 
 def audit_in_order(  # noqa: PLR0913 - how long, and what robots have followed until when
@@ -129,18 +118,18 @@ def audit_in_order(  # noqa: PLR0913 - how long, and what robots have followed u
 
     With `followed`, only the plans of its robots, each with the plan that the robot has followed until now.
     """
-    auditor = Auditor(instance, engine)
+    beside, audit = Beside(instance, engine), Audit()
     for plan in in_order(solution):
         if not goes_on():
-            auditor.audit.undecided.append(plan)
+            audit.undecided.append(plan)
             continue
         if followed is None or plan.robot in followed:
-            earlier = auditor.earlier_plan(plan, (followed or {}).get(plan.robot), now)
+            earlier = _earlier_plan(beside, audit, plan, (followed or {}).get(plan.robot), now)
             if earlier is not None:
-                auditor.is_late(plan, earlier)
-        auditor.commit(plan)
+                audit.late.append(Late(plan, earlier, tuple(beside.committed)))
+        beside.commit(plan)
         advance()
-    return auditor.audit
+    return audit
 
 
 def audit_in_some_order(
@@ -157,26 +146,26 @@ def audit_in_some_order(
     would be late in it. A plan stays late as long as there is room for the earlier one that was found. If the time is
     over before, the rest is undecided.
     """
-    auditor = Auditor(instance, engine)
+    beside, audit = Beside(instance, engine), Audit()
     waiting: list[tuple[Plan, Plan | None]] = [(plan, None) for plan in in_order(solution)]
     is_moving = True
     while is_moving:
         is_moving, asked, waiting = False, waiting, []
         for number, (plan, known) in enumerate(asked):
             if not goes_on():
-                auditor.audit.undecided = [each for each, _ in (*waiting, *asked[number:])]
-                return auditor.audit
-            earlier = known if known is not None and auditor.has_room(known) else auditor.earlier_plan(plan)
+                audit.undecided = [each for each, _ in (*waiting, *asked[number:])]
+                return audit
+            earlier = known if known is not None and beside.has_room(known) else _earlier_plan(beside, audit, plan)
             if earlier is None:
-                auditor.commit(plan)
+                beside.commit(plan)
                 is_moving = True
                 advance()
             else:
                 waiting.append((plan, earlier))
     for plan, earlier in waiting:
         if earlier is not None:
-            auditor.is_late(plan, earlier)
-    return auditor.audit
+            audit.late.append(Late(plan, earlier, tuple(beside.committed)))
+    return audit
 
 
 def in_order(solution: Solution) -> Iterator[Plan]:
