@@ -53,6 +53,14 @@ def robot_called(instance: Instance, name: str) -> RobotId:
     return id
 
 
+def whole_number(text: str) -> int | None:
+    """The number that a text of digits stands for; `None` for other text, and for more digits than Python reads."""
+    try:
+        return int(text) if text.isascii() and text.isdigit() else None
+    except ValueError:
+        return None
+
+
 @contextmanager
 def inside(prefix: str) -> Iterator[None]:
     """Put the paths of refusals below a prefix: `$.graph` inside `$.instance` is `$.instance.graph`."""

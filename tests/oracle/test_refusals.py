@@ -116,6 +116,7 @@ REFUSED = (
     (f"{ASSIGN} r2 d:-1 a", "Error: STOP 1: the service must be a whole number of at least 0, not -1 [instance/stops]"),
     (f"{ASSIGN} r2 d b:x", "Error: STOP 2: it must be the id of a resource, and 'b:x' is not [instance/stops]"),
     (f"{ASSIGN} r2 d:9999999999", "Error: STOP: the services must be at most 1073741823 together, and are more; "),
+    (f"{ASSIGN} r2 d:{'9' * 5000}", "Error: STOP 1: it must be the id of a resource, and "),
     (f"{ASSIGN} r9 d", "Error: ROBOT: the instance must have the robot, and has no 'r9' [request/robot]"),
     (f"{ASSIGN} r2 d -o ./after.json", "another option writes there too"),
     (f"{ASSIGN} r2 d -o - --instance -", "another option writes there too"),
@@ -125,6 +126,12 @@ REFUSED = (
     ("execution simulate east.json east-plans.json --delays=x", "[request/delays]"),
     ("execution simulate east.json east-plans.json --delays=0.1:x", "[request/delays]"),
     ("execution simulate east.json east-plans.json --delays=0.00000001", "[request/delays]"),
+    ("execution simulate east.json east-plans.json --delays /proc/self/mem", "/proc/self/mem: it cannot be read: "),
+    (f"execution simulate east.json east-plans.json --delays {'9' * 300}", "[request/delays]"),
+    (f"execution simulate east.json east-plans.json --delays 0.1:{'9' * 5000}", "[request/delays]"),
+    (f"execution dependencies east.json east-plans.json --delay r1:0:{'9' * 5000}", "[request/delays]"),
+    ("execution dependencies east.json east-plans.json --delay r1:0:²", "[request/delays]"),
+    ("execution dependencies east.json east-plans.json --delay r1", "[request/delays]"),
     ("execution simulate east.json east-plans.json --delays delays-nobody.json", "[request/delays]"),
     ("execution simulate east.json east-plans.json --delays nothing.json", "[request/delays]"),
     (
@@ -219,7 +226,10 @@ def many_documents(folder: Path) -> Path:
 
 @pytest.mark.parametrize(
     ("command", "messages"),
-    [pytest.param(command, messages, id=f"{command}-{number}") for number, (command, *messages) in enumerate(REFUSED)],
+    [
+        pytest.param(command, messages, id=f"{command[:80]}-{number}")
+        for number, (command, *messages) in enumerate(REFUSED)
+    ],
 )
 def test_it_is_refused_in_one_sentence_and_nothing_is_written(
     carproof: Run, many: Path, command: str, messages: list[str]

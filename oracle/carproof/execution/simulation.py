@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass
-from pathlib import Path
 from typing import Literal, TypeAlias, get_args
 
 import msgspec
@@ -16,6 +15,7 @@ from carp_spec.permutations import splitmix64
 from carp_spec.rule import DESIGN, rule
 from carproof.execution.delays import Delay, executed, in_order, on_the_clock, planned, slack, smallest_collision, stuck
 from carproof.execution.switching import switching
+from carproof.requests import whole_number
 
 Driver: TypeAlias = Literal["clock", "order", "switching"]
 DRIVERS: tuple[Driver, ...] = get_args(Driver)
@@ -59,27 +59,27 @@ def random_delays(solution: Solution, share: int, most: int, seed: int) -> tuple
     return tuple(Delay(*node, 1 + next(stream) % most) for node in places if next(stream) % MILLION < share)
 
 
-def delays_named(text: str, solution: Solution, seed: int) -> tuple[Delay, ...]:
-    """The delays of `--delays`: the name of a file, or a model like `0.05:3`; raises `Refusal`."""
-    if Path(text).is_file():
-        return read_delays(Path(text).read_bytes(), solution)
+def drawn_delays(text: str, solution: Solution, seed: int) -> tuple[Delay, ...]:
+    """The delays that a model like `0.05:3` draws; raises `Refusal`."""
     chance, _, most = text.partition(":")
     whole, _, part = chance.partition(".")
-    digits = f"{whole or '0'}{part:0<{DIGITS}}"
-    if not (digits.isascii() and digits.isdigit() and len(part) <= DIGITS and int(digits) <= MILLION):
+    share = whole_number(f"{whole or '0'}{part:0<{DIGITS}}")
+    if share is None or share > MILLION or len(part) > DIGITS:
         message = f"{text!r} must be a file of delays, or a chance from 0 to 1 with the most ticks, like 0.05:3"
         raise Refusal("option", "$.delays", delays_are_right.id, message)
-    if most and not (most.isascii() and most.isdigit() and 0 < int(most) < MILLION):
+    ticks = whole_number(most or "1")
+    if ticks is None or not 0 < ticks < MILLION:
         raise Refusal("option", "$.delays", delays_are_right.id, f"the most ticks must be a number above 0, not {most}")
-    return random_delays(solution, int(digits), int(most or 1), seed)
+    return random_delays(solution, share, ticks, seed)
 
 
 def delay_named(text: str, instance: Instance, solution: Solution) -> Delay:
     """The delay that ROBOT:VISIT:TICKS names; raises `Refusal`."""
-    *name, visit, ticks = text.split(":")
-    called = [robot.id for robot in instance.robots if str(robot.id) == ":".join(name)]
-    if len(called) == 1 and visit.isdigit() and ticks.isdigit():
-        delay = Delay(called[0], int(visit), int(ticks))
+    name, *numbers = ["", "", *text.rsplit(":", 2)][-3:]
+    called = [robot.id for robot in instance.robots if str(robot.id) == name]
+    visit, ticks = map(whole_number, numbers)
+    if len(called) == 1 and visit is not None and ticks is not None:
+        delay = Delay(called[0], visit, ticks)
         if delays_are_right(solution, [delay]):
             return delay
     message = f"{text!r} must be ROBOT:VISIT:TICKS, with a planned robot, the position of a visit and ticks above 0"

@@ -1,18 +1,28 @@
 """`carproof execution simulate`: simulations of a solution with delayed robots."""
 
+import os
 from pathlib import Path
 
 import click
 
+from carp_spec import Solution
 from carp_spec.documents.decoding import write
 from carp_spec.documents.solutions import write_solution, write_trace
 from carp_spec.requests import require_tick
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import OutputFile, naming, print_document, read_sound, write_whole
+from carproof.command_line.files import OutputFile, print_document, read_file, read_sound, write_whole
 from carproof.command_line.options import examples, instance_argument, json_option, solution_argument
 from carproof.command_line.tables import print_line, print_table
-from carproof.execution.delays import until
-from carproof.execution.simulation import DRIVERS, Driver, Execution, delays_named, execute, execution_document
+from carproof.execution.delays import Delay, until
+from carproof.execution.simulation import (
+    DRIVERS,
+    Driver,
+    Execution,
+    drawn_delays,
+    execute,
+    execution_document,
+    read_delays,
+)
 
 COLUMNS = ("driver", "robots", "delays", "arrived", "late", "mean", "worst", "collisions", "standing", "switches")
 MOST_SHOWN = 3
@@ -66,8 +76,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     if now is not None:
         require_tick(now, "$.now")
     problem, sound = read_sound(instance, solution)
-    with naming(delays):
-        chosen = delays_named(delays, sound, seed)
+    chosen = delays_of(delays, sound, seed)
     executions = [execute(problem, sound, each, chosen) for each in ([driver] if driver else DRIVERS)]
     if trace is not None:
         whole = executions[0].trace
@@ -83,6 +92,13 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             for violation in execution.collisions[:MOST_SHOWN]:
                 print_line(f"{execution.driver}: {violation}")
     return Answer.of(all(execution.is_safe for execution in executions))
+
+
+def delays_of(text: str, solution: Solution, seed: int) -> tuple[Delay, ...]:
+    """The delays in a file of that name, or those that a model like `0.05:3` draws."""
+    if os.path.isfile(text):  # noqa: PTH113 - a long text is none
+        return read_file(text, lambda data: read_delays(data, solution))
+    return drawn_delays(text, solution, seed)
 
 
 def row_of(execution: Execution) -> list[object]:

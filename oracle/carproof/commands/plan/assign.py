@@ -13,6 +13,7 @@ from carproof.command_line.options import Asked, asks_for_a_robot, examples, giv
 from carproof.command_line.output import show_addition
 from carproof.command_line.tables import print_line
 from carproof.engines import engine_named
+from carproof.requests import whole_number
 
 
 @click.command(
@@ -61,6 +62,6 @@ def stop_called(instance: Instance, name: str) -> Stop:
     """The stop that RESOURCE or RESOURCE:SERVICE names; if there is no such resource, a rule says so."""
     places: dict[str, ResourceId] = {str(id): id for id in instance.graph.index}
     resource, _, service = name.rpartition(":")
-    if name in places or not (service.isascii() and service.removeprefix("-").isdigit()):
+    if name in places or whole_number(service.removeprefix("-")) is None:
         return Stop(places.get(name, name))
     return Stop(places.get(resource, resource), int(service))
