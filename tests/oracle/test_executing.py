@@ -10,7 +10,7 @@ from tests.oracle.running import Document, Run, line, save, solution, town
 from tests.oracle.viewing import SVG, picture_of
 from tests.profiles import draws
 
-from carp_spec import Solution, check_update, judge
+from carp_spec import judge
 from carp_spec.execution.execution_rules import is_acyclic
 from carproof import Delay, read_instance, read_solution
 from carproof.engines import engine_named
@@ -83,36 +83,6 @@ def test_a_picture_shows_a_rotation_as_a_circle_of_arrows(carproof: Run, elsewhe
         assert arrows == {"waits": waits, "cycle": cycle}
 
 
-@pytest.fixture
-def late_town(carproof: Run, elsewhere: Path) -> Path:
-    """A town in which r8 has no plan yet, and what the others have done by tick 4 after a delay, in order."""
-    carproof("generate grid --width 6 --height 4 --map 12 --robots 8 --seed 3 -o town.json")
-    carproof("plan town.json --planner carp --engine reference -o plans.json")
-    given = json.loads(Path("plans.json").read_bytes())
-    plans = [plan for plan in given["plans"] if plan["robot"] != "r8"]
-    order = [robot for robot in given["order"] if robot != "r8"]
-    save(plans={**given, "plans": plans, "order": order, "unplanned": ["r8"]}, delays=[["r1", 0, 3]])
-    asked = "execution simulate town.json plans.json --driver order --delays delays.json --trace trace.json --now 4"
-    assert carproof(asked).code == 0
-    assert carproof("execution check town.json plans.json trace.json").code == 0
-    assert carproof("execution retime town.json plans.json trace.json --engine reference -o late.json").code == 0
-    return elsewhere
-
-
-def solution_of(folder: Path, name: str) -> Solution:
-    return read_solution((folder / f"{name}.json").read_bytes())
-
-
-def test_a_robot_is_added_to_plans_after_a_delay(late_town: Path, carproof: Run) -> None:
-    assert carproof("add town.json late.json r8 --now 4 --engine reference -o added.json").code == 1
-    earlier = json.loads(Path("town.json").read_bytes())
-    earlier["robots"][-1]["release"] = 5
-    save(town=earlier)
-    assert carproof("add town.json late.json r8 --now 4 --engine reference -o added.json").code == 0
-    assert carproof("check town.json added.json --require-all").code == 0
-    assert check_update(solution_of(late_town, "late").plans, solution_of(late_town, "added").plans, 4) == ()
-
-
 def test_what_a_trace_tells_stays_where_plans_change_from_the_next_tick_on(carproof: Run, elsewhere: Path) -> None:
     carproof("generate grid --width 4 --height 1 --map 3 --robots 1 --seed 1 -o row.json")
     carproof("plan row.json -o plans.json")
@@ -124,7 +94,7 @@ def test_what_a_trace_tells_stays_where_plans_change_from_the_next_tick_on(carpr
     left = []
     for now in (2, 3):
         assert carproof(f"polish row.json late.json --now {now} --iterations 9 -o better.json").code == 0
-        left.append(solution_of(elsewhere, "better").plans[0].visits[0].leave)
+        left.append(read_solution((elsewhere / "better.json").read_bytes()).plans[0].visits[0].leave)
     assert left == [2, 3]
 
 

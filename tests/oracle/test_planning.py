@@ -97,6 +97,7 @@ def test_add_plans_the_robot_and_tells_what_changed(carproof: Run) -> None:
     ]
     assert json.loads(Path("more.json").read_text()) == TWO_PLANNED
     assert json.loads(carproof("add town.json one.json r2 --m 1 --json").stdout) == TWO_PLANNED
+    assert carproof("add town.json one.json r2 --now 2").code == 1, "r1 has passed its start by then"
 
 
 def test_a_plan_that_is_in_the_way_of_others_can_be_replaced(carproof: Run) -> None:
