@@ -231,7 +231,7 @@ class Fleet:
             place = core.enlist(robot)
             if not core.add(place, self._known.from_tick(now), self._planner, number):
                 unplanned.extend(core.dismiss([place]))
-        return self._take_over(core, now, self._before(audit), unplanned, {robot.id: robot for robot in robots})
+        return self._take_over(core, now, audit, unplanned, {robot.id: robot for robot in robots})
 
     def assign(self, robot: RobotId, stops: Sequence[Stop], now: int | None = None, *, audit: bool = False) -> Change:
         """Give a robot that is under way or parked further stops, behind those that it has, as `carproof.assign` does.
@@ -252,8 +252,8 @@ class Fleet:
         self._require_little("$.stops", len(further.stops))
         core, plan, at = self._taken(), self._known.plans[robot].plan, self._known.from_tick(now)
         if core.assign(further, before, plan, at, self._planner, self._known.numbers[robot]):
-            return self._take_over(core, now, self._before(audit), new={robot: further})
-        return self._take_over(core, now, self._before(audit), unplanned=[robot])
+            return self._take_over(core, now, audit, new={robot: further})
+        return self._take_over(core, now, audit, unplanned=[robot])
 
     def forget(self) -> None:
         """Forget what is done by the tick `now`: robots start in the visits under way, as of when they entered them."""
@@ -292,7 +292,7 @@ class Fleet:
         after = retime(instance, solution, whole)
         core = self._taken()
         core.replan([plan for plan in after.plans if plan != self._known.plans[plan.robot].plan], after.order)
-        return self._take_over(core, now, after.plans if audit else None, told=now)
+        return self._take_over(core, now, audit, told=after.plans)
 
     def polish(
         self, *, iterations: int | None = None, seconds: float | None = None, seed: int = 0, audit: bool = False
@@ -305,16 +305,13 @@ class Fleet:
 
         started = perf_counter()
         require_polish_options(iterations, seconds, seed)
-        before, core, now = self._before(audit), self._taken(), self._known.from_tick(self.now)
+        core, now = self._taken(), self._known.from_tick(self.now)
 
         def goes_on() -> bool:
             return seconds is None or perf_counter() - started < seconds
 
         polish_fleet(core, goes_on, last_round(iterations, seconds), seed, now)
-        return self._take_over(core, self.now, before)
-
-    def _before(self, audit: bool) -> Sequence[Plan] | None:
-        return [each.plan for each in self._known.plans.values()] if audit else None
+        return self._take_over(core, self.now, audit)
 
     def _tick(self, now: int | None) -> int:
         if now is None:
@@ -370,15 +367,15 @@ class Fleet:
         self,
         core: "PlannedFleet",
         now: int,
-        before: Sequence[Plan] | None,
+        audit: bool,
         unplanned: Sequence[RobotId] = (),
         new: Mapping[RobotId, Robot] = NOBODY,
-        told: int | None = None,
+        told: Sequence[Plan] | None = None,
     ) -> Change:
         """Know what the compiled fleet holds, without the plans that have ended by now.
 
-        Robots that are `new` have come or have other stops. With the plans before, which robots have followed until
-        then, the changed ones are audited.
+        Robots that are `new` have come or have other stops. They have followed the plans before until then, or those
+        that a trace has `told`; beside these an audit looks at the changed ones.
         """
         known = self._known
         changed = tuple(each for each in core.changed() if each != known.plans.get(each.robot))
@@ -389,14 +386,14 @@ class Fleet:
         for id in (*left, *(each for each in unplanned if each in come)):
             del robots[id], numbers[id]
             plans.pop(id, None)
-        last = known.told if told is None else told
+        last = known.told if told is None else now
         after = _Known(known.empty, now, robots, plans, *core.places, numbers, known.count + len(come), last)
-        found = None if before is None else _audited(after, changed, before)
+        found = _audited(known.solution.plans if told is None else told, after, changed) if audit else None
         self._known, self._core = after, core
         return Change(now, changed, tuple(unplanned), left, found)
 
 
-def _audited(known: _Known, changed: Sequence[PlanColumns], before: Sequence[Plan]) -> Audit:
+def _audited(before: Sequence[Plan], known: _Known, changed: Sequence[PlanColumns]) -> Audit:
     sound, engine = sound_solution(known.instance, known.solution), engine_named("optimized")
     plans = {plan.robot: plan for plan in before}
     followed = {each.robot: plans.get(each.robot) for each in changed}
