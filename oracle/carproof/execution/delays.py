@@ -3,10 +3,9 @@
 All of it follows from the action dependency graph of a lawful solution, an `Order`.
 """
 
-from collections import defaultdict, deque
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import groupby
 
 from msgspec import structs
 
@@ -58,20 +57,10 @@ def slack(order: Order) -> dict[Node, int | None]:
     """
     ticks = planned(order)
     horizon = max(ticks.values(), default=0)
-    latest = {node: tick if is_last(order, node) else horizon for node, tick in ticks.items()}
-    into: dict[Node, list[Dependency]] = defaultdict(list)
-    for edge in order.edges:
-        into[edge.after].append(edge)
-    for _, group in groupby(reversed(order.nodes), key=lambda node: order.visit(node).enter):
-        waiting = deque(group)
-        alike = set(waiting)
-        while waiting:
-            node = waiting.popleft()
-            for edge in into.get(node, ()):
-                if latest[edge.before] > latest[node] - edge.ticks:
-                    latest[edge.before] = latest[node] - edge.ticks
-                    if edge.before in alike:
-                        waiting.append(edge.before)
+    least = {node: -tick if is_last(order, node) else -horizon for node, tick in ticks.items()}
+    turned = tuple(replace(edge, before=edge.after, after=edge.before) for edge in order.edges)
+    backwards = replace(order_with(order.instance, order.solution, turned), nodes=order.nodes[::-1])
+    latest = {node: -tick for node, tick in earliest(backwards, least).items()}
     return {
         node: min(
             (latest[edge.after] - edge.ticks - tick for edge in order.out_of.get(node, ()) if edge.holds), default=None
