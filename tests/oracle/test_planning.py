@@ -8,8 +8,6 @@ from tests.oracle.running import (
     BEHIND_PLAN,
     EAST,
     EAST_PLAN,
-    HEAD_ON,
-    TWO,
     TWO_PLANNED,
     Document,
     Run,
@@ -22,12 +20,7 @@ from tests.oracle.running import (
 
 import carproof as public
 
-
-@pytest.fixture(autouse=True)
-def _three(folder: Path) -> None:
-    """One more robot, which meets both others head-on."""
-    del folder
-    save(three=corridor([*TWO["robots"], HEAD_ON]), none=solution({}))
+pytestmark = pytest.mark.usefixtures("folder")
 
 
 def test_a_robot_that_another_planner_could_plan_is_told_so(carproof: Run) -> None:
@@ -105,13 +98,14 @@ def test_a_plan_that_is_in_the_way_of_others_can_be_replaced(carproof: Run) -> N
 
 
 def test_a_robot_whose_id_is_a_number_is_found_by_it(carproof: Run) -> None:
-    save(numbered=corridor([{**EAST, "id": 7}, {**EAST, "id": "8", "start": "b"}]))
+    save(numbered=corridor([{**EAST, "id": 7}, {**EAST, "id": "8", "start": "b"}]), none=solution({}))
     assert json.loads(carproof("query numbered.json none.json 7 --json").stdout) == {"plan": EAST_PLAN}
 
 
 @pytest.fixture(name="pocket")
-def swapping_at_a_pocket() -> Document:
+def swapping_at_a_pocket(folder: Path) -> Document:
     """Two robots that park at each other's start, and no planning order leaves room for both."""
+    del folder
     robots = [{"id": "r1", "start": "a", "goal": "e"}, {"id": "r2", "start": "e", "goal": "a"}]
     document = town("am em pm", robots, "park")
     save(pocket=document)

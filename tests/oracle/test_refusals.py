@@ -29,7 +29,6 @@ DOCUMENTS: dict[str, object] = {
     "late": corridor([{**EAST, "release": 2**70}]),
     "unordered": {**TWO_PLANNED, "order": ["r1"]},
     "far": {**TWO_PLANNED, "plans": [{"robot": "r1", "visits": [["a", 0, 10**9]]}], "order": ["r1"]},
-    "bound": BOUND,
     "bound-scale": {**BOUND, "scale": 1.5},
     "bound-high": {**BOUND, "bound": 6},
     "east": corridor([EAST]),
