@@ -88,6 +88,8 @@ REFUSED = (
     ("plan /proc/self/mem", "/proc/self/mem: it cannot be read: Input/output error"),
     ("plan town.json -o none/out.json", "there is no folder "),
     ("plan town.json -o /proc/x", "/proc/x: it "),
+    (f"check {'x' * 300} plans.json", "xxx: there is no such file."),
+    (f"plan town.json -o {'x' * 300}", "xxx: it cannot be written: File name too long"),
     ("check - -", "Only one of the files can be standard input."),
     ("demo town.json", "town.json"),
     # planners and robots

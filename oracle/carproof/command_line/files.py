@@ -35,7 +35,7 @@ class InputFile(click.Path[str]):
 
     def convert(self, value: FileName, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """Refuse a name that cannot be an input, before any work is done."""
-        path, name = Path(value), os.fspath(value)
+        name = os.fspath(value)
         if not name:
             self.fail("the name of a file must not be empty.", param, ctx)
         if name == STANDARD_INPUT:
@@ -43,9 +43,9 @@ class InputFile(click.Path[str]):
                 raise click.UsageError("Only one of the files can be standard input.", ctx)
             if ctx is not None:
                 ctx.meta[READ] = True
-        elif path.is_dir() and not self.dir_okay:
+        elif os.path.isdir(name) and not self.dir_okay:  # noqa: PTH112 - a name that is too long is none
             self.fail(f"{name}: it is a folder.", param, ctx)
-        elif not path.exists():
+        elif not os.path.exists(name):  # noqa: PTH110
             self.fail(f"{name}: there is no such file.", param, ctx)
         return name
 
@@ -66,6 +66,10 @@ class OutputFile(click.Path[Path]):
         path = STANDARD_OUTPUT if value == "-" else Path(os.path.realpath(value))
         if value == "-" and ctx is not None:
             ctx.meta[TAKEN] = True
+        try:
+            path.exists()
+        except OSError as error:
+            self.fail(f"{value}: it cannot be written: {error.strerror}.", param, ctx)
         others: dict[Path, object] = {} if ctx is None else ctx.meta.setdefault(WRITTEN, {})
         if others.setdefault(path, param) is not param and (value == "-" or not path.exists() or path.is_file()):
             self.fail(f"{value}: another option writes there too.", param, ctx)
