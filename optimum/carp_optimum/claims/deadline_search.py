@@ -65,11 +65,7 @@ class DeadlineSearch:
         wide = max(len(self.instance.graph.resources), self.search.market.delays)
         if len(self.instance.robots) * wide > LARGEST_ENCODING:
             return 0
-        ways: list[Longs] = []
-        for _ in self.search.wander(STEPS, self.search.scale // 4):
-            check()
-            ways.append(self.search.delays())
-        delays = np.stack(ways)
+        delays = np.stack([self.search.delays() for _ in self.search.wander(STEPS, check)])
         if delays.max(axis=0).sum() > LARGEST_DELAYS:
             return 0
         allowed = range(int(delays.max(initial=0)) + MARGIN + 1)

@@ -61,12 +61,8 @@ class SightSearch:
         wide = max(len(self.instance.graph.resources), search.market.delays, search.horizon)
         if len(self.instance.robots) * wide > LARGEST_ENCODING:
             return 0
-        ways: list[Ways] = []
-        for _ in search.wander(STEPS, search.scale // 4):
-            check()
-            ways.append((search.delays(), search.places()))
-        gain = self._add(ways, check)
-        gained = gain * search.scale // STEPS
+        ways = [(search.delays(), search.places()) for _ in search.wander(STEPS, check)]
+        gained = self._add(ways, check) * search.scale // STEPS
         return gained if gained * LEAST_GAIN >= search.best else 0
 
     def watch(self, check: Callable[[], None]) -> None:

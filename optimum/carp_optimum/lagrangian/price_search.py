@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
+from operator import itemgetter
 from time import monotonic_ns
 from typing import NamedTuple
 
@@ -21,16 +22,7 @@ from carp_optimum.lagrangian.multipliers import (
     requests_of,
     with_rows,
 )
-from carp_optimum.lagrangian.price_steps import (
-    KEPT,
-    LARGEST_GAIN,
-    PARTS,
-    UNIT,
-    forget_prices,
-    set_price,
-    turn_all,
-    walk_all,
-)
+from carp_optimum.lagrangian.price_steps import KEPT, LARGEST_GAIN, PARTS, UNIT, forget, set_price, turn, walk
 from carp_optimum.lagrangian.priced_paths import find_rests, find_ways, see_ways
 from carp_optimum.lagrangian.state import Cells, add_up
 from carp_optimum.lagrangian.usage import count_ways
@@ -180,9 +172,9 @@ class PriceSearch:
 
     def restore(self) -> int:
         """Go back to the best prices, without a course: their bound."""
-        forget_prices(self.native)
         kept = self._kept
         for is_exchange, priced in ((False, kept.limits), (True, kept.exchanges)):
+            forget(self.native, is_exchange)
             for cell, price in np.column_stack(priced).tolist():
                 set_price(self.native, is_exchange, cell, price)
         self.fees = kept.fees.copy()
@@ -192,9 +184,7 @@ class PriceSearch:
     def add_deadlines(self, deadlines: Sequence[Deadlines]) -> None:
         """Add deadlines with prices of 0."""
         none = np.zeros(len(deadlines), np.int64)
-        self._set_deadlines(
-            [*self.deadlines, *deadlines], *(np.concatenate([each, none]) for each in self._of_deadlines())
-        )
+        self._set_deadlines([*self.deadlines, *deadlines], lambda each: np.concatenate([each, none]))
 
     def keep_deadlines(self, numbers: Sequence[int]) -> None:
         """Keep the deadlines with these numbers alone, with their prices; the best bound is then what they prove."""
@@ -208,17 +198,13 @@ class PriceSearch:
 
     def _select(self, numbers: Sequence[int]) -> None:
         places = np.array(numbers, np.int64)
-        self._set_deadlines(
-            [self.deadlines[each] for each in numbers], *(each[places] for each in self._of_deadlines())
-        )
+        self._set_deadlines([self.deadlines[each] for each in numbers], lambda each: each[places])
 
-    def _of_deadlines(self) -> tuple[Longs, Longs, Longs]:
-        return self.fees, self._course_of_fees, self._kept.fees
-
-    def _set_deadlines(self, deadlines: Sequence[Deadlines], fees: Longs, course: Longs, best: Longs) -> None:
-        """Let there be these deadlines, with their prices, courses and best prices."""
-        self.deadlines, self.fees, self._course_of_fees = [*deadlines], fees, course
-        self._kept = self._kept._replace(fees=best)
+    def _set_deadlines(self, deadlines: list[Deadlines], changed: Callable[[Longs], Longs]) -> None:
+        """Let there be these deadlines, with their prices, courses and best prices, which are changed alike."""
+        self.deadlines = deadlines
+        self.fees, self._course_of_fees = changed(self.fees), changed(self._course_of_fees)
+        self._kept = self._kept._replace(fees=changed(self._kept.fees))
         robots, resources = len(self.instance.robots), len(self.instance.graph.resources)
         self._flat, rows = flattened(self.deadlines, resources)
         row = np.zeros((robots, self.horizon), np.int32)
@@ -257,10 +243,11 @@ class PriceSearch:
         surplus = self._kept_by() - self._flat.sizes + 1
         self._course_of_fees = self._course_of_fees * KEPT // PARTS + UNIT * surplus
         self._course_of_fees[(self._course_of_fees < 0) & (self.fees == 0)] = 0
-        square = turn_all(self.native) + int((self._course_of_fees**2).sum())
+        square = turn(self.native, False) + turn(self.native, True) + int((self._course_of_fees**2).sum())
         if square == 0:
             return False
-        walk_all(self.native, gain, square)
+        for is_exchange in (False, True):
+            walk(self.native, is_exchange, gain, square)
         self.fees = np.maximum(self.fees + gain * UNIT * self._course_of_fees // square, 0)
         self.count += 1
         return True
@@ -322,12 +309,13 @@ class PriceSearch:
                 on_step()
             aim = aim * 2 if (self.best - before) * ENOUGH_OF_SPAN > aim else aim // 2
 
-    def wander(self, steps: int, aim: int) -> Iterator[None]:
-        """Take this many steps near the best prices, one by one."""
+    def wander(self, steps: int, check: Callable[[], None]) -> Iterator[None]:
+        """Take this many steps near the best prices, one by one; `check` may raise `TimeOver` after each."""
         bound = self.restore()
         for _ in range(steps):
-            self._step(aim, bound)
+            self._step(self.scale // 4, bound)
             bound = self._bound()
+            check()
             yield
 
     def places(self) -> IntTable:
@@ -357,36 +345,23 @@ class PriceSearch:
         Where the checker would take more than `MOST_STEPS`, those robots that gain least by a step claim their shortest
         ways alone, which takes it no step.
         """
-        shortest = self.shortest_costs()
-        claims: list[tuple[int, int, int]] = []
+        costs = dict(self.shortest_costs())
+        claims: list[tuple[Fraction, int, RobotId, int]] = []
         steps = self.market.scratch.steps
-        for position, (_, sure) in enumerate(shortest):
-            if sure is not None:
+        for position, (robot, shortest) in enumerate(costs.items()):
+            if shortest is not None:
                 steps[0] = 0
-                claims.append((position, find_ways(self.native, position, position + 1), int(steps[0])))
-        costs = dict(shortest)
-        ids = [robot for robot, _ in shortest]
+                least = find_ways(self.native, position, position + 1)
+                taken = int(steps[0])
+                claims.append((Fraction(taken, max(least - shortest, 1)), taken, robot, least))
         left = MOST_STEPS
-        for position, least, taken in sorted(claims, key=self._steps_by_gain):
+        for _, taken, robot, least in sorted(claims, key=itemgetter(0)):
             if taken <= left:
                 left -= taken
-                costs[ids[position]] = least
+                costs[robot] = least
         return tuple(costs.items())
-
-    def _steps_by_gain(self, claim: tuple[int, int, int]) -> Fraction:
-        """How many steps the checker takes for a part of a tick of the claim that is more than the shortest way's."""
-        position, least, taken = claim
-        requests = self.market.requests
-        gain = least - self.scale * int(requests.earliest[position] - requests.release[position])
-        return Fraction(taken, max(gain, 1))
 
     def shortest_costs(self) -> tuple[tuple[RobotId, int | None], ...]:
         """The cost of each robot's shortest way, in parts of a tick."""
-        requests = self.market.requests
-        return tuple(
-            (
-                robot.id,
-                None if requests.earliest[each] == NONE else self.scale * int(requests.earliest[each] - robot.release),
-            )
-            for each, robot in enumerate(self.instance.robots)
-        )
+        robots = zip(self.instance.robots, self.market.requests.earliest.tolist(), strict=True)
+        return tuple((each.id, None if at == NONE else self.scale * (at - each.release)) for each, at in robots)

@@ -7,12 +7,13 @@ A stay counts in the row of its resource, and in those of all its groups and of 
 took the whole step, the stay's price would change by several steps. So the rows of groups and exchanges take a smaller
 step, by `LESS`, and count for as much less in the square: the gain stays the same.
 
-Only active cells are looked at (`carp_optimum.lagrangian.state.Cells`): no price of another can change.
+Only active cells are looked at (`carp_optimum.lagrangian.state.Cells`): no price of another can change. Each function
+is for the prices of constraints, or of exchanges.
 """
 
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.references import Native
-from carp_optimum.lagrangian.state import Cells, Market, change_price, market_at
+from carp_optimum.lagrangian.state import Market, cells_of, change_price, market_at
 from carp_optimum.lagrangian.usage import list_cell, surplus_of_exchange
 
 UNIT = 64  # of a course
@@ -24,16 +25,10 @@ LARGEST_PRICE = 1 << 40
 
 
 @entry
-def turn_all(native: Native[Market]) -> int:
-    """Turn the course of all prices, and leave out cells that are active no longer: the square of the course."""
+def turn(native: Native[Market], is_exchange: bool) -> int:
+    """Turn the course of the prices, and leave out cells that are active no longer: the square of the course."""
     market = market_at(native)
-    return turn(market, market.limits, False) + turn(market, market.exchanges, True)
-
-
-@compiled
-def turn(market: Market, cells: Cells, is_exchange: bool) -> int:
-    """Turn the course of the prices of constraints or of exchanges; its square."""
-    graph = market.graph
+    cells = cells_of(market, is_exchange)
     kept = 0
     square = 0
     less = 0
@@ -45,7 +40,7 @@ def turn(market: Market, cells: Cells, is_exchange: bool) -> int:
         if is_exchange:
             surplus = surplus_of_exchange(market, number, tick)
         else:
-            surplus = int(market.usage.present[number][tick]) - int(graph.room[number])
+            surplus = int(market.usage.present[number][tick]) - int(market.graph.room[number])
         after = int(cells.course[row][tick]) * KEPT // PARTS + UNIT * max(min(surplus, MOST_SURPLUS), -MOST_SURPLUS)
         if after < 0 and price == 0:  # no price falls below 0
             after = 0
@@ -70,16 +65,10 @@ def takes_less(market: Market, is_exchange: bool, number: int) -> bool:
 
 
 @entry
-def walk_all(native: Native[Market], gain: int, square: int) -> None:
-    """Change all prices along their course, of that square together with whatever else is changed, to gain so much."""
+def walk(native: Native[Market], is_exchange: bool, gain: int, square: int) -> None:
+    """Change the prices along their course, of that square together with whatever else is changed, to gain so much."""
     market = market_at(native)
-    walk(market, market.limits, False, gain, square)
-    walk(market, market.exchanges, True, gain, square)
-
-
-@compiled
-def walk(market: Market, cells: Cells, is_exchange: bool, gain: int, square: int) -> None:
-    """Change the prices of constraints or of exchanges along their course."""
+    cells = cells_of(market, is_exchange)
     for k in range(int(cells.size[0])):
         cell = int(cells.active[k])
         number, tick = cell // market.horizon, cell % market.horizon
@@ -93,16 +82,10 @@ def walk(market: Market, cells: Cells, is_exchange: bool, gain: int, square: int
 
 
 @entry
-def forget_prices(native: Native[Market]) -> None:
-    """Set all prices and courses to 0."""
+def forget(native: Native[Market], is_exchange: bool) -> None:
+    """Set the prices and courses to 0."""
     market = market_at(native)
-    forget(market, market.limits, False)
-    forget(market, market.exchanges, True)
-
-
-@compiled
-def forget(market: Market, cells: Cells, is_exchange: bool) -> None:
-    """Set the prices and courses of constraints or of exchanges to 0."""
+    cells = cells_of(market, is_exchange)
     for k in range(int(cells.size[0])):
         number, tick = int(cells.active[k]) // market.horizon, int(cells.active[k]) % market.horizon
         row = int(cells.row[number])
@@ -112,8 +95,8 @@ def forget(market: Market, cells: Cells, is_exchange: bool) -> None:
 
 @entry
 def set_price(native: Native[Market], is_exchange: bool, cell: int, price: int) -> None:
-    """Set the price of a constraint's or an exchange's cell that had none."""
+    """Set the price of a cell that had none."""
     market = market_at(native)
     number, tick = cell // market.horizon, cell % market.horizon
     change_price(market, is_exchange, number, tick, price)
-    list_cell(market, market.exchanges if is_exchange else market.limits, number, tick)
+    list_cell(market, cells_of(market, is_exchange), number, tick)

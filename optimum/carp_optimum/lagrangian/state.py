@@ -206,9 +206,15 @@ def move_between(market: Market, source: int, target: int) -> int:
 
 
 @compiled
+def cells_of(market: Market, is_exchange: bool) -> Cells:
+    """The cells of exchanges, or those of constraints."""
+    return market.exchanges if is_exchange else market.limits
+
+
+@compiled
 def change_price(market: Market, is_exchange: bool, number: int, tick: int, more: int) -> None:
     """Raise the price of a constraint with a row, or of the exchange row of a move from a resource with a row."""
-    cells = market.exchanges if is_exchange else market.limits
+    cells = cells_of(market, is_exchange)
     price = cells.price[int(cells.row[number])]
     price[tick] = int(price[tick]) + more
     if is_exchange:
