@@ -17,7 +17,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from carp_optimized.jit.kinds import Ints, IntTable, Longs
+from carp_optimized.jit.kinds import IntTable, Longs
 from carp_optimized.jit.references import Native
 from carp_optimized.state.arrays import NONE, Graph
 from carp_optimum.claims.pair_states import Meeting, Side, find_claim, find_meetings
@@ -78,20 +78,22 @@ def member_of(side: Side, spots: npt.NDArray[np.bool_], tick: int) -> Member:
 class Pair:
     """Two robots, whose joint states before the end are searched, and the ways that they took in some steps."""
 
-    def __init__(self, search: PriceSearch, sides: tuple[Side, Side], end: int, steps: int) -> None:
+    def __init__(self, search: PriceSearch, sides: tuple[Side, Side], steps: int) -> None:
         self.sides = sides
-        self.end = end
+        self.end = end_of(search, *sides)
         self.steps = steps
         self.meeting = meeting_of(*sides)
         self.natives = search.native, Native(self.meeting)
 
-    def at_one_tick(self) -> Claim:
-        """The heaviest claim about one tick."""
+    def claim(self, is_about_more: bool, check: Callable[[], None]) -> Claim:
+        """The heaviest claim about one tick, or else perhaps one about more; `check` may raise `TimeOver`."""
         weight = find_claim(*self.natives, self.end, self.steps)
-        return (weight, self.last_members()) if weight >= LEAST_WEIGHT else NOTHING
+        if weight >= LEAST_WEIGHT:
+            return weight, self.last_members()
+        return self.at_more_ticks(check) if is_about_more else NOTHING
 
     def at_more_ticks(self, check: Callable[[], None]) -> Claim:
-        """A claim about one tick and earlier ones; `check` may raise `TimeOver`."""
+        """A claim about one tick and earlier ones."""
         for side in self.sides:
             side.sees[:-1] = side.often.sum(axis=1) > 0
             side.held[:-1, :-1] = side.often > 0
@@ -182,95 +184,67 @@ def first_entries(graph: Graph, durations: Longs, start: int, release: int) -> L
     return ticks
 
 
-class Sides:
-    """The robots as `carp_optimum.claims.pair_states` sees them, each made when it is first asked for.
+def end_of(search: PriceSearch, one: Side, other: Side) -> int:
+    """The tick before which a claim of two robots is searched for."""
+    earliest = search.market.requests.earliest
+    return min(int(min(earliest[each.robot] + each.delay for each in (one, other))) + 1, search.horizon)
+
+
+def work_of(search: PriceSearch, one: Side | None, other: Side | None) -> int:
+    """The most pairs of states, over all ticks, in a search for a claim of two robots; 0 where there is none."""
+    return 0 if one is None or other is None else one.place.size * other.place.size * end_of(search, one, other)
+
+
+def side_of(search: PriceSearch, robot: int, at: IntTable, most: int, entries: dict[int, Longs]) -> Side | None:
+    """The robot with delays up to the most, unless it has no way or too many spots; `at` has where its ways were.
 
     `entries` keeps the first entries of robots that were seen before.
     """
-
-    def __init__(self, search: PriceSearch, at: IntTable, delays: Ints, entries: dict[int, Longs]) -> None:
-        self.search = search
-        self.at = at
-        self.delays = delays
-        self.entries = entries
-        self.known: dict[int, Side | None] = {}
-
-    def work(self, one: int, other: int) -> int:
-        """The most pairs of states, over all ticks, in a search for a claim of two robots."""
-        first, second = self.side(one), self.side(other)
-        if first is None or second is None:
-            return 0
-        return first.place.size * second.place.size * self.end(one, other)
-
-    def end(self, one: int, other: int) -> int:
-        """The tick before which a claim of two robots is searched for."""
-        earliest = self.search.market.requests.earliest
-        return min(int(min(earliest[at] + self.delays[at] for at in (one, other))) + 1, self.search.horizon)
-
-    def claim(self, one: int, other: int, is_about_more: bool, check: Callable[[], None]) -> Claim:
-        """The heaviest claim of two robots at a tick, or else perhaps one about more ticks.
-
-        `check` may raise `TimeOver`.
-        """
-        first, second = self.side(one), self.side(other)
-        if first is None or second is None:
-            return NOTHING
-        pair = Pair(self.search, (first, second), self.end(one, other), len(self.at))
-        claim = pair.at_one_tick()
-        return pair.at_more_ticks(check) if claim == NOTHING and is_about_more else claim
-
-    def side(self, robot: int) -> Side | None:
-        """The robot, unless it has no way or too many spots."""
-        if robot not in self.known:
-            self.known[robot] = self._side(robot)
-        return self.known[robot]
-
-    def _side(self, robot: int) -> Side | None:
-        market = self.search.market
-        requests, graph = market.requests, market.graph
-        start, goal = int(requests.start[robot]), int(requests.goal[robot])
-        if start == goal or requests.rest[robot][start] == NONE:
-            return None
-        release, rest, most = int(requests.release[robot]), requests.rest[robot], int(self.delays[robot])
-        latest = int(requests.earliest[robot]) + most
-        durations = graph.duration.astype(np.int64) * int(requests.pace[robot])
-        if robot not in self.entries:
-            self.entries[robot] = first_entries(graph, durations, start, release)
-        arrival = np.where(rest == NONE, 1 << 30, self.entries[robot] + durations + rest)
-        resource = np.flatnonzero(arrival <= latest).astype(np.int32)
-        spots = len(resource)
-        if spots > MOST_SPOTS or durations[resource].sum() > MOST_SPOTS or start not in resource:
-            return None
-        spot = np.full(len(durations), NONE, np.int32)
-        spot[resource] = np.arange(spots)
-        lengths = [*durations[resource].tolist(), 1 if market.parks else int(durations[goal]), 1, 1]
-        first = np.cumsum([0, *lengths]).astype(np.int32)
-        states, horizon = int(first[-1]), self.search.horizon
-        number = np.append(spot, [spots, NONE]).astype(np.int32)  # at the goal at the end, or nowhere
-        often = np.zeros((horizon, spots + 2), np.int32)
-        places = number[self.at[:, robot, :]]
-        ticks = np.broadcast_to(np.arange(horizon), places.shape)
-        np.add.at(often, (ticks.ravel(), places.ravel()), 1)
-        latest_at = np.append(latest - durations[resource] - rest[resource], latest)
-        often[:, :-1][np.arange(horizon)[:, None] > latest_at] = 0
-        return Side(
-            robot=robot,
-            delay=most,
-            start=int(first[spots + 2]) if release > 0 else int(first[spot[start] + 1]) - 1,
-            spot=spot,
-            resource=resource,
-            first=first,
-            latest=latest_at,
-            often=often[:, :-1].copy(),
-            spot_of=np.repeat([*range(spots + 1), spots, spots + 1], lengths).astype(np.int32),
-            place=np.repeat([*resource, goal, NONE, NONE], lengths).astype(np.int32),
-            branches=np.zeros(states, np.int32),
-            following=np.zeros((states, int(np.diff(graph.first).max(initial=0)) + 2), np.int32),
-            sees=np.zeros(horizon + 1, np.int32),
-            held=np.ones((horizon + 1, spots + 2), np.int32),
-            used=np.zeros(spots + 2, np.int32),
-            left=np.zeros(spots + 2, np.int32),
-            before=np.zeros(spots + 2, np.int32),
-            chosen=np.zeros(spots + 2, np.int32),
-            inside=np.zeros(spots + 2, np.int32),
-        )
+    market = search.market
+    requests, graph = market.requests, market.graph
+    start, goal = int(requests.start[robot]), int(requests.goal[robot])
+    if start == goal or requests.rest[robot][start] == NONE:
+        return None
+    release, rest = int(requests.release[robot]), requests.rest[robot]
+    latest = int(requests.earliest[robot]) + most
+    durations = graph.duration.astype(np.int64) * int(requests.pace[robot])
+    if robot not in entries:
+        entries[robot] = first_entries(graph, durations, start, release)
+    arrival = np.where(rest == NONE, 1 << 30, entries[robot] + durations + rest)
+    resource = np.flatnonzero(arrival <= latest).astype(np.int32)
+    spots = len(resource)
+    if spots > MOST_SPOTS or durations[resource].sum() > MOST_SPOTS or start not in resource:
+        return None
+    spot = np.full(len(durations), NONE, np.int32)
+    spot[resource] = np.arange(spots)
+    lengths = [*durations[resource].tolist(), 1 if market.parks else int(durations[goal]), 1, 1]
+    first = np.cumsum([0, *lengths]).astype(np.int32)
+    states, horizon = int(first[-1]), search.horizon
+    number = np.append(spot, [spots, NONE]).astype(np.int32)  # at the goal at the end, or nowhere
+    often = np.zeros((horizon, spots + 2), np.int32)
+    places = number[at]
+    ticks = np.broadcast_to(np.arange(horizon), places.shape)
+    np.add.at(often, (ticks.ravel(), places.ravel()), 1)
+    latest_at = np.append(latest - durations[resource] - rest[resource], latest)
+    often[:, :-1][np.arange(horizon)[:, None] > latest_at] = 0
+    return Side(
+        robot=robot,
+        delay=most,
+        start=int(first[spots + 2]) if release > 0 else int(first[spot[start] + 1]) - 1,
+        spot=spot,
+        resource=resource,
+        first=first,
+        latest=latest_at,
+        often=often[:, :-1].copy(),
+        spot_of=np.repeat([*range(spots + 1), spots, spots + 1], lengths).astype(np.int32),
+        place=np.repeat([*resource, goal, NONE, NONE], lengths).astype(np.int32),
+        branches=np.zeros(states, np.int32),
+        following=np.zeros((states, int(np.diff(graph.first).max(initial=0)) + 2), np.int32),
+        sees=np.zeros(horizon + 1, np.int32),
+        held=np.ones((horizon + 1, spots + 2), np.int32),
+        used=np.zeros(spots + 2, np.int32),
+        left=np.zeros(spots + 2, np.int32),
+        before=np.zeros(spots + 2, np.int32),
+        chosen=np.zeros(spots + 2, np.int32),
+        inside=np.zeros(spots + 2, np.int32),
+    )

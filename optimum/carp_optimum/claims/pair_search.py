@@ -7,13 +7,13 @@ proved; the others are dropped, and a later round finds them again where they ar
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from itertools import combinations
+from itertools import chain, combinations
 from typing import TypeAlias
 
 import numpy as np
 
 from carp_optimized.jit.kinds import IntTable, Longs
-from carp_optimum.claims.pair_constraints import Sides
+from carp_optimum.claims.pair_constraints import Pair, side_of, work_of
 from carp_optimum.lagrangian.deadlines import Deadlines, Member
 from carp_optimum.lagrangian.price_search import PriceSearch
 from carp_optimum.sat.proving import short_refutation
@@ -89,9 +89,11 @@ class SightSearch:
         """
         search = self.search
         delays, at = (np.stack(each) for each in zip(*ways, strict=True))
-        sides = Sides(search, at, np.minimum(delays.max(axis=0) + MARGIN, self.most), self.entries)
+        most = np.minimum(delays.max(axis=0) + MARGIN, self.most).tolist()
         known = {tuple(claim.members) for claim in search.deadlines} | self.without_proof
-        work = {pair: sides.work(*pair) for pair in pairs_in(at, len(self.instance.graph.resources))}
+        pairs = pairs_in(at, len(self.instance.graph.resources))
+        side = {each: side_of(search, each, at[:, each], most[each], self.entries) for each in {*chain(*pairs)}}
+        work = {(one, other): work_of(search, side[one], side[other]) for one, other in pairs}
         chosen: list[Deadlines] = []
         gain = 0
         left = MOST_WORK
@@ -101,8 +103,11 @@ class SightSearch:
                 left -= work[pair]
                 if left < 0 or len(chosen) == MOST_FOUND:
                     break
-                weight, members = sides.claim(*pair, self.is_slow, check)
+                one, other = (side[each] for each in pair)
                 self.searched[pair] += 1
+                if one is None or other is None:
+                    continue
+                weight, members = Pair(search, (one, other), len(ways)).claim(self.is_slow, check)
                 if weight > 0 and members not in known:
                     chosen.append(Deadlines(members))
                     gain += weight
