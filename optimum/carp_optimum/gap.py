@@ -6,6 +6,7 @@ is below zero if the planner does better than any order, as one that replans rob
 """
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from carp_optimum.optimum import optimum
@@ -69,10 +70,8 @@ def gap(instance: Instance, planners: Sequence[Planner] = PLANNERS, limit: float
         reached.append(PlannerGap(planner, total, len(solution.unplanned)))
     order = None
     if len(instance.robots) <= MOST_ORDERED:
-        try:
+        with suppress(TimeOver):
             order = best_order(instance, limit, best.lower)
-        except TimeOver:
-            order = None
     return Gap(best, order, tuple(reached))
 
 

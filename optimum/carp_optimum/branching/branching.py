@@ -163,8 +163,7 @@ class Branching:
         """The part that a choice makes, bounded; what the bound rises by is noted."""
         self._part.alive[:] = part.alive
         self._part.rows.price[:] = part.price
-        place = NONE if node == NONE else int(self._part.nodes.place[node])
-        bounded = self._bounded(STEPS, AIM) if put(self._native, robot, part.tick, place) else []
+        bounded = self._bounded(STEPS, AIM) if put(self._native, robot, part.tick, node) else []
         if node != NONE:
             rise = min(bounded[0].bound - part.bound, MOST_RISE) if bounded else MOST_RISE
             self._part.nodes.gain[node] += max(rise, 0)

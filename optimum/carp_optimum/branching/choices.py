@@ -154,14 +154,13 @@ def work_left(part: Part, robot: int, tick: int) -> int:
 
 
 @entry
-def put(native: Native[Part], robot: int, tick: int, resource: int) -> bool:
-    """Let the robot be in the resource at the tick, or be gone where it is `NONE`; false if the law forbids it."""
+def put(native: Native[Part], robot: int, tick: int, chosen: int) -> bool:
+    """Let the robot be in the chosen node of the tick, or be gone where it is `NONE`; false if the law forbids it."""
     part = part_at(native)
     nodes = part.nodes
-    chosen = NONE if resource == NONE else int(nodes.at[robot][tick * (nodes.first.size - 1) + resource])
     for node in range(int(nodes.of_robot[robot]), int(nodes.of_robot[robot + 1])):
         now = int(nodes.tick[node])
-        if resource == NONE:
+        if chosen == NONE:
             keep = now < tick
         elif now == tick:
             keep = node == chosen

@@ -281,7 +281,7 @@ class CoreGuided:
         """The answer when the time is over: the best plans and the best bound so far."""
         if self.beside is not None:
             self.take(self.beside.latest())
-        known = self.known if self.best is None else self.known.with_plans(self.best)
+        known = self.known.with_plans(self.best)
         cost = known.total
         if cost is not None:
             require_kept(self.lower, cost)
