@@ -19,7 +19,6 @@ from carp_optimum.lagrangian.deadlines import Deadlines, Member
 from carp_optimum.lagrangian.price_search import PriceSearch
 from carp_optimum.sat.proving import short_refutation
 from carp_optimum.sat.solver import Solver
-from carp_spec import Instance
 from carp_verify.optimum.clauses import Literal
 from carp_verify.optimum.encoding import Encoding, violated
 
@@ -73,7 +72,7 @@ class DeadlineSearch:
         chosen: list[Deadlines] = []
         gain = 0
         try:
-            self.cores = self.cores or _Cores(self.instance, self.search, check)
+            self.cores = self.cores or _Cores(self.search, check)
             self.cores.check = check
             for share in SHARES:
                 for core in self.cores.disjoint((later <= share).argmax(axis=1).tolist()):
@@ -110,12 +109,12 @@ def _steps(later: Longs, allowed: Allowed) -> int:
 class _Cores:
     """Cores of the formula of all robots that have a way, with the conflicts that were found so far."""
 
-    def __init__(self, instance: Instance, search: PriceSearch, check: Callable[[], None]) -> None:
-        self.instance = instance
+    def __init__(self, search: PriceSearch, check: Callable[[], None]) -> None:
+        self.instance = search.instance
         self.check = check
         self.most = search.market.delays - 1
-        self.encoding = Encoding(instance, check)
-        self.present = [self.encoding.formula.variable() for _ in instance.robots]
+        self.encoding = Encoding(self.instance, check)
+        self.present = [self.encoding.formula.variable() for _ in self.instance.robots]
         self.solver = Solver(self.encoding.formula, self.look)
 
     def look(self) -> None:

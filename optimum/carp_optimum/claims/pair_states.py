@@ -241,8 +241,6 @@ def weigh(meeting: Meeting, size: int, tick: int, ways: int) -> None:
     if in_all <= meeting.found[0]:
         return
     relate(meeting, size, tick)
-    if is_free(meeting):
-        return
     weight = in_all - most_flow(meeting)
     if weight > meeting.found[0]:
         meeting.found[0] = weight
@@ -276,17 +274,6 @@ def relate(meeting: Meeting, size: int, tick: int) -> None:
     for number in range(size):
         row, column = spots_at(meeting, number, tick)
         meeting.together[row][column] = 1
-
-
-@compiled
-def is_free(meeting: Meeting) -> bool:
-    """Whether all spots that are used can be taken together."""
-    one, other = meeting.one.used, meeting.other.used
-    for row in range(1, int(one[0]) + 1):
-        for column in range(1, int(other[0]) + 1):
-            if meeting.together[int(one[row])][int(other[column])] == 0:
-                return False
-    return True
 
 
 @compiled
