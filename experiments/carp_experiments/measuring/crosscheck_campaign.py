@@ -7,18 +7,16 @@ compared too.
 
 from collections.abc import Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import msgspec
 
 import carp_optimized
 from carp_experiments.measuring.blocks import BlockCase, Questions
+from carp_experiments.measuring.crosscheck import Difference, ask, document
 from carp_reference.time_expanded import find_plan_by_ticks
 from carp_spec import plan_cost, total_cost
 from carproof.testing.random_instances import GROUPED, SMALL, WITH_STOPS, Mix, question
-
-if TYPE_CHECKING:
-    from carp_experiments.measuring.crosscheck import Difference
 
 Kind: TypeAlias = Literal["stops", "groups"]
 MIXES: Mapping[Kind | None, Mix] = {None: SMALL, "stops": WITH_STOPS, "groups": GROUPED}
@@ -44,9 +42,7 @@ def asked(case: BlockCase, kind: Kind | None = None) -> Block:
 
 def ask_both(block: Block, seed: int, number: int, kind: Kind | None = None) -> None:
     """Ask both engines one question; an engine that fails by an exception differs too."""
-    from carp_experiments.measuring.by_ticks import faults_by_ticks  # noqa: PLC0415
-    from carp_experiments.measuring.crosscheck import ask  # noqa: PLC0415
-    from carp_experiments.measuring.crosscheck_command import document  # noqa: PLC0415 - each worker loads it
+    from carp_experiments.measuring.by_ticks import faults_by_ticks  # noqa: PLC0415 - loads the planners
 
     drawn = question(seed, number, MIXES[kind])
     try:
@@ -67,7 +63,7 @@ def ask_both(block: Block, seed: int, number: int, kind: Kind | None = None) -> 
             block.differences.append({"number": number, "windows": by_windows, "ticks": by_ticks, **document(answers)})
 
 
-def arrivals(answers: "Difference") -> tuple[int | None, int | None]:
+def arrivals(answers: Difference) -> tuple[int | None, int | None]:
     """When a robot arrives beside the others of the answer, as the query and a search tick by tick find it."""
     instance, solution = answers.instance, answers.reference
     robot = next(iter((*solution.unplanned, *solution.order)))

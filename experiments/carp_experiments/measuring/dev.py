@@ -6,7 +6,7 @@ from carproof.command_line.lazy import LazyGroup
 from carproof.command_line.options import examples
 
 HERE = __name__.rpartition(".")[0]
-COMMANDS = {"bench": f"{HERE}.bench_command", "crosscheck": f"{HERE}.crosscheck_command"}
+COMMANDS = {"bench": f"{HERE}.bench", "crosscheck": f"{HERE}.crosscheck"}
 
 
 @click.group(

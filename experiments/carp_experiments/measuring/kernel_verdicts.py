@@ -12,11 +12,14 @@ from typing import Any, Literal
 import msgspec
 
 from carp_experiments.measuring.blocks import BlockCase, Questions
+from carp_reference import certifier
 from carp_spec import Instance, RobotId, Solution, judge
 from carp_spec.documents.query_certificates import QueryCertificateDocument, ServedLayer, certificate_of
 from carp_spec.documents.solutions import solution_document
 from carp_spec.permutations import shuffle, splitmix64
 from carp_verify.kernel import KernelVerdict, ask, request
+from carproof.judging.verdicts import verify_query
+from carproof.testing.mutations import MUTATIONS
 from carproof.testing.random_instances import SMALL, WITH_STOPS, Draw, draw_fleet, draw_instance
 
 BROKEN = 4
@@ -89,8 +92,6 @@ def checked(instance: Instance, solution: Solution) -> Question:
 
 def broken(draw: Draw, instance: Instance, solution: Solution) -> tuple[Instance, Solution]:
     """The solution changed in one place so that it breaks a rule."""
-    from carproof.testing.mutations import MUTATIONS  # noqa: PLC0415 - each worker loads it
-
     kinds = (list(mutation(instance, solution)) for mutation in shuffle(MUTATIONS, draw.stream))
     chosen = draw.one_of(next(mutants for mutants in kinds if mutants))
     return chosen.instance, chosen.solution
@@ -98,8 +99,6 @@ def broken(draw: Draw, instance: Instance, solution: Solution) -> tuple[Instance
 
 def verified(instance: Instance, solution: Solution, certificate: QueryCertificateDocument) -> Question:
     """A query certificate to verify: the verdicts must agree whether it proves its bound, or which rule it breaks."""
-    from carproof.judging.verdicts import verify_query  # noqa: PLC0415 - each worker loads it
-
     verdict = verify_query(instance, solution, certificate, kernel=False)
     asked = request("verify-query", instance, solution=solution_document(solution), certificate=certificate)
     return Question(asked, "proved" if verdict.proved else "refused", (verdict.rule,), bound=verdict.bound)
@@ -107,8 +106,6 @@ def verified(instance: Instance, solution: Solution, certificate: QueryCertifica
 
 def certified(instance: Instance, solution: Solution, robot: RobotId, now: int) -> QueryCertificateDocument:
     """The certificate of the planner to read."""
-    from carp_reference import certifier  # noqa: PLC0415 - each worker loads it
-
     own = [plan for plan in solution.plans if plan.robot == robot]
     asked = certifier(instance)
     asked.commit([plan for plan in solution.plans if plan.robot != robot])
