@@ -1,16 +1,16 @@
 """The report on conventions: how near each brings carproof's measurements to the paper's figures and comparisons."""
 
-from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
+from typing import TypeAlias
 
 import msgspec
 
 from carp_experiments.paper.claims import Claim, quality_claims
 from carp_experiments.paper.map_cases import FULL_MAP, TENTH_MAP
 from carp_experiments.paper.quality import interval_of_means, summarise
-from carp_experiments.report import ExperimentReport, Table
+from carp_experiments.report import ExperimentReport, Table, table_of
 from carp_experiments.statistics import Interval
 from carp_experiments.store import Row
 
@@ -20,6 +20,8 @@ VARIANTS = {"as published": "", "with the baseline": " + baseline"}
 SHOWN = 24
 """The nearest conventions, which the table has."""
 MEANS = ("neither fails", "own successes", "nobody fails")
+Totals: TypeAlias = Mapping[str, int | None]
+"""Of an assignment, by algorithm."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,26 +77,21 @@ def nearness_of(convention: str, variant: str, stored: Sequence[ConventionsRow],
     summary = summarise(rows, robots)
     claims = (claim for claim in quality_claims(summary) if not claim.claim.startswith("up to"))  # those name a number
     verdicts = {claim.claim: verdict_of(claim, variant) for claim in claims}
-    savings = {
-        str(map): {means: saving_of(stored, convention, variant, map, means, robots) for means in MEANS}
-        for map in PAPERS
-    }
-    intervals = {str(map): interval_of(stored, convention, variant, map, robots) for map in PAPERS}
-    failures = {
-        str(map): {
+    savings, intervals, failures = {}, {}, {}
+    for map, (_, published) in PAPERS.items():
+        names = [name + VARIANTS[variant] for name in published]
+        totals = [totals_of(row.results[convention], robots) for row in stored if row.map == map]
+        savings[str(map)] = savings_of(totals, names)
+        intervals[str(map)] = interval_of(totals, names)
+        failures[str(map)] = {
             each.algorithm: each.failures
             for each in summary.algorithms
             if each.map == map and (" + " in each.algorithm) in (False, bool(VARIANTS[variant]))
         }
-        for map in PAPERS
-    }
     broken = sum(verdict == "not reproduced" for verdict in verdicts.values())
-    apart = [
-        None if (saved := savings[str(map)][MEANS[0]]) is None else abs(saved / papers - 1)
-        for map, (papers, _) in PAPERS.items()
-    ]
-    known = [each for each in apart if each is not None]
-    distance = sum(known) + broken if len(known) == len(apart) else None
+    saved = {map: savings[str(map)][MEANS[0]] for map in PAPERS}
+    apart = [abs(each / PAPERS[map][0] - 1) for map, each in saved.items() if each is not None]
+    distance = sum(apart) + broken if len(apart) == len(saved) else None
     assignments = len({row.assignment for row in stored})
     return Nearness(convention, variant, assignments, savings, intervals, failures, verdicts, broken, distance)
 
@@ -104,64 +101,52 @@ def verdict_of(claim: Claim, variant: str) -> str:
     return claim.with_baseline or claim.verdict if VARIANTS[variant] else claim.verdict
 
 
-def saving_of(
-    stored: Sequence[ConventionsRow], convention: str, variant: str, map: int, means: str, robots: int
-) -> float | None:
-    """The mean of the actions that the paper's algorithms of a map save against CARP."""
-    savings = []
-    for name in (each + VARIANTS[variant] for each in PAPERS[map][1]):
-        totals: dict[str, list[int]] = defaultdict(list)
-        for row in (each for each in stored if each.map == map):
-            found = {each: total for each, (planned, total) in row.results[convention].items() if planned == robots}
-            compared = {
-                MEANS[0]: "CARP" in found and name in found,
-                MEANS[1]: True,
-                MEANS[2]: len(found) == len(row.results[convention]),
-            }
-            if compared[means]:
-                for each in {"CARP", name} & found.keys():
-                    totals[each].append(found[each])
-        if totals["CARP"] and totals[name]:
-            savings.append(fmean(totals["CARP"]) - fmean(totals[name]))
-    return fmean(savings) if savings else None
+def totals_of(results: Mapping[str, tuple[int, int]], robots: int) -> Totals:
+    """The total of each algorithm, `None` if it has failed."""
+    return {name: total if planned == robots else None for name, (planned, total) in results.items()}
 
 
-def interval_of(
-    stored: Sequence[ConventionsRow], convention: str, variant: str, map: int, robots: int
-) -> Interval | None:
-    """The interval of the actions saved on a map, where CARP and the other plan all robots; of several assignments."""
-    names = [each + VARIANTS[variant] for each in PAPERS[map][1]]
-    saved = []
-    for found in (row.results[convention] for row in stored if row.map == map):
-        whole = {name: total for name, (planned, total) in found.items() if planned == robots}
-        saved.append([whole["CARP"] - whole[name] for name in names if name in whole and "CARP" in whole])
+def savings_of(assignments: Sequence[Totals], names: Sequence[str]) -> dict[str, float | None]:
+    """By kind of mean, the actions that these algorithms save against CARP: the mean of theirs."""
+    everybody = {name for totals in assignments for name in totals}
+    savings: dict[str, list[float]] = {means: [] for means in MEANS}
+    for name in names:
+        for means, needed in zip(MEANS, ({"CARP", name}, set[str](), everybody), strict=True):
+            counted = [totals for totals in assignments if not any(totals[each] is None for each in needed)]
+            carps, ours = ([each for totals in counted if (each := totals[of]) is not None] for of in ("CARP", name))
+            if carps and ours:
+                savings[means].append(fmean(carps) - fmean(ours))
+    return {means: fmean(found) if found else None for means, found in savings.items()}
+
+
+def interval_of(assignments: Sequence[Totals], names: Sequence[str]) -> Interval | None:
+    """The interval of the actions saved, where CARP and the other plan all robots; of several assignments."""
+    saved = [
+        [totals["CARP"] - ours for name in names if (ours := totals[name]) is not None]
+        for totals in assignments
+        if totals["CARP"] is not None
+    ]
     groups = [each for each in saved if each]
     return interval_of_means(groups) if len(groups) > 1 else None
 
 
 def distance_table(ordered: Sequence[Nearness]) -> Table:
     """Each convention with its savings and failures, the nearest first."""
-    columns = ("convention", "variant", "saved, map 10", "saved, map 20", "failures, map 10", "broken", "distance")
-    rows = tuple(
-        (
-            each.convention,
-            each.variant,
-            *(saved_on(each, map) for map in (TENTH_MAP, FULL_MAP)),
-            " / ".join(
-                str(each.failures[str(TENTH_MAP)].get(name, "-"))
-                for name in ("CARP", "CARP10", "Proposed_6" + VARIANTS[each.variant])
-            ),
-            str(each.broken),
-            number(each.distance, 2),
-        )
-        for each in ordered[:SHOWN]
-    )
     title = (
         f"The conventions nearest to the paper, over {max((each.assignments for each in ordered), default=0)} "
         f"assignments: actions saved against CARP, where {', '.join(MEANS)} (the paper: 65 and 35); failures of CARP, "
         "CARP10, Proposed_6; comparisons that are contradicted"
     )
-    return Table("conventions", title, columns, rows, columns[2:])
+    cells: Mapping[str, Callable[[Nearness], object]] = {
+        "convention": lambda each: each.convention,
+        "variant": lambda each: each.variant,
+        "saved, map 10": lambda each: saved_on(each, TENTH_MAP),
+        "saved, map 20": lambda each: saved_on(each, FULL_MAP),
+        "failures, map 10": failures_on_tenth,
+        "broken": lambda each: each.broken,
+        "distance": lambda each: number(each.distance, 2),
+    }
+    return table_of("conventions", title, ordered[:SHOWN], cells, names=2)
 
 
 def saved_on(each: Nearness, map: int) -> str:
@@ -169,6 +154,12 @@ def saved_on(each: Nearness, map: int) -> str:
     first, *others = (number(each.savings[str(map)][means]) for means in MEANS)
     interval = each.intervals[str(map)]
     return " / ".join([first if interval is None else f"{interval:.0f}", *others])
+
+
+def failures_on_tenth(each: Nearness) -> str:
+    """The failures of three algorithms on the tenth map."""
+    names = ("CARP", "CARP10", "Proposed_6" + VARIANTS[each.variant])
+    return " / ".join(str(each.failures[str(TENTH_MAP)].get(name, "-")) for name in names)
 
 
 def claims_table(ordered: Sequence[Nearness]) -> Table:
