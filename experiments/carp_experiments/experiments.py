@@ -42,27 +42,28 @@ class Profile:
 class Experiment:
     """An experiment. The case of an assignment and a map is the same in every profile with as many robots.
 
-    `compute` and `summarise` name functions, which are loaded when they are needed, for numba is slow to load: the
-    former makes the row of a case, the latter a report of rows and the number of robots.
+    `functions` names two without their endings: `_row` makes the row of a case, and `_report` a report of rows and the
+    number of robots, unless `reported` names another. They are loaded when needed, for numba is slow to load.
     """
 
     name: str
     sentence: str
     full: Profile
     quick: Profile
-    compute: str
-    summarise: str
+    functions: str
+    reported: str = ""
     places: int = 400
 
     def cases(self, profile: Profile) -> Sequence[MapCase]:
         """The cases, assignment by assignment, so that a run that is stopped has whole assignments."""
-        compute = resolve_name(f"carp_experiments.{self.compute}")
+        compute = resolve_name(f"carp_experiments.{self.functions}_row")
         places = product(range(profile.assignments), profile.maps)
         return [MapCase(compute, map, assignment, profile.robots) for assignment, map in places]
 
     def report(self, rows: Iterable[Row], robots: int) -> ExperimentReport:
         """The report of rows."""
-        report: ExperimentReport = resolve_name(f"carp_experiments.{self.summarise}")(rows, robots)
+        reported = self.reported or f"{self.functions}_report"
+        report: ExperimentReport = resolve_name(f"carp_experiments.{reported}")(rows, robots)
         return report
 
     def refuse(self, profile: Profile) -> None:
@@ -78,32 +79,28 @@ EXPERIMENTS = (
         "Experiment 1 of the paper: failures and total cost, over the maps.",
         Profile(500, 100, ALL_MAPS),
         Profile(20, 30, SOME_MAPS),
-        "paper.quality:quality_row",
-        "paper.quality_report:quality_report",
+        "paper.quality:quality",
     ),
     Experiment(
         "time",
         "Experiment 2 of the paper: time to plan when the k-th robot comes.",
         Profile(500, 100, (PAPERS_MAP,)),
         Profile(20, 50, (PAPERS_MAP,)),
-        "paper.adding_time:time_row",
-        "paper.adding_time:time_report",
+        "paper.adding_time:time",
     ),
     Experiment(
         "reuse",
         "Queries asked to add a robot, avoided, and why.",
         Profile(500, 100, (PAPERS_MAP,)),
         Profile(20, 50, (PAPERS_MAP,)),
-        "paper.reuse_counts:reuse_row",
-        "paper.reuse_counts:reuse_report",
+        "paper.reuse_counts:reuse",
     ),
     Experiment(
         "gap",
         "Small maps, 8 x 8, against the optimum.",
         Profile(100, 10, ALL_MAPS),
         Profile(20, 6, SOME_MAPS),
-        "paper.small_gaps:gap_row",
-        "paper.small_gaps:gap_report",
+        "paper.small_gaps:gap",
         places=8 * 8,
     ),
     Experiment(
@@ -111,88 +108,80 @@ EXPERIMENTS = (
         "Fixed paths, k shortest and k disjoint, and greedy best-first, against CARP.",
         Profile(100, 100, ALL_MAPS),
         Profile(5, 10, (10, 20)),
-        "paper.related_work:related_row",
-        "paper.related_work:related_report",
+        "paper.related_work:related",
     ),
     Experiment(
         "polish",
         "The distance of the planner, and of polished plans, from a proved lower bound.",
         Profile(100, 100, ALL_MAPS),
         Profile(8, 20, (10, 20)),
-        "paper.polishing:polish_row",
-        "paper.polishing:polish_report",
+        "paper.polishing:polish",
     ),
     Experiment(
         "conventions",
         "What the paper leaves open: under which conventions its numbers come out.",
         Profile(100, 100, (10, FULL_MAP)),
         Profile(2, 30, (10, FULL_MAP)),
-        "paper.conventions:conventions_row",
-        "paper.conventions_report:conventions_report",
+        "paper.conventions:conventions",
+        reported="paper.conventions_report:conventions_report",
     ),
     Experiment(
         "nearest",
         "The conventions that bring the paper's numbers out best, over more assignments.",
         Profile(100, 100, (10, FULL_MAP)),
         Profile(2, 30, (10, FULL_MAP)),
-        "paper.conventions:nearest_row",
-        "paper.conventions_report:conventions_report",
+        "paper.conventions:nearest",
+        reported="paper.conventions_report:conventions_report",
     ),
     Experiment(
         "remaining",
         "Conventions that the screening left out: divisors of the distance, and plans kept where CARP fails.",
         Profile(100, 100, (10, FULL_MAP)),
         Profile(2, 30, (10, FULL_MAP)),
-        "paper.conventions:remaining_row",
-        "paper.conventions_report:conventions_report",
+        "paper.conventions:remaining",
+        reported="paper.conventions_report:conventions_report",
     ),
     Experiment(
         "neighbours",
         "Where the neighbourhood planner helps: kinds of instances, M, and polish for the same time.",
         Profile(20, 100, (5, 10, 15, FULL_MAP)),
         Profile(2, 20, (10, FULL_MAP)),
-        "beyond.neighbours:neighbours_row",
-        "beyond.neighbours:neighbours_report",
+        "beyond.neighbours:neighbours",
     ),
     Experiment(
         "left-out",
         "Robots that carproof plan leaves out, before and after its repair.",
         Profile(100, 100, ALL_MAPS),
         Profile(5, 60, SOME_MAPS),
-        "beyond.left_out:left_out_row",
-        "beyond.left_out:left_out_report",
+        "beyond.left_out:left_out",
     ),
     Experiment(
         "execution",
         "Late robots on the clock, in order and switching: lateness, arrivals and collisions.",
         Profile(4, 40, (10, 15, FULL_MAP, WAREHOUSE)),
         Profile(2, 10, (10, 20)),
-        "beyond.delayed:execution_row",
-        "beyond.delayed:execution_report",
+        "beyond.delayed:execution",
     ),
     Experiment(
         "following",
         "The price of plans without rotations: following forbidden, and rotations removed.",
         Profile(20, 60, (10, 15, FULL_MAP, WAREHOUSE)),
         Profile(4, 20, (10, FULL_MAP)),
-        "beyond.following:following_row",
-        "beyond.following:following_report",
+        "beyond.following:following",
     ),
     Experiment(
         "people",
         "People with priority among robots: how early they arrive, and the cost for the robots.",
         Profile(20, 100, (FULL_MAP,)),
         Profile(5, 30, (FULL_MAP,)),
-        "beyond.people:people_row",
-        "beyond.people:people_report",
+        "beyond.people:people",
     ),
     Experiment(
         "stream",
         "Robots that come at random, at several rates: throughput up to saturation, and waiting.",
         Profile(4, 500, (10, FULL_MAP, WAREHOUSE)),
         Profile(2, 200, (10, FULL_MAP)),
-        "beyond.streams:stream_row",
-        "beyond.streams:stream_report",
+        "beyond.streams:stream",
         places=MOST_STREAMED,
     ),
     Experiment(
@@ -200,8 +189,7 @@ EXPERIMENTS = (
         "Pick-and-drop orders that come at random: throughput, time in the system and time an order.",
         Profile(4, 200, (10, FULL_MAP, WAREHOUSE, SORTING)),
         Profile(2, 30, (10, FULL_MAP)),
-        "beyond.lifelong:lifelong_row",
-        "beyond.lifelong:lifelong_report",
+        "beyond.lifelong:lifelong",
         places=MOST_STREAMED,
     ),
 )

@@ -12,8 +12,7 @@ from carp_experiments.figures import line_figure
 from carp_experiments.page import RESULTS, Run, read_run, summary_of
 from carp_experiments.paper.adding_time import Time, time_figures
 from carp_experiments.paper.polishing import PolishSummary, polish_figures
-from carp_experiments.paper.quality import QualitySummary
-from carp_experiments.paper.quality_report import quality_figures
+from carp_experiments.paper.quality import QualitySummary, quality_figures
 from carp_experiments.paper.related_work import Related, related_figures
 from carp_experiments.paper.small_gaps import GapOf, gap_figures
 from carp_experiments.report import Figure

@@ -4,8 +4,7 @@ import pytest
 
 import carp_optimized
 from carp_experiments.paper.map_cases import MapCase, instance_of
-from carp_experiments.paper.quality import ALGORITHMS, quality_row, seeded, summarise
-from carp_experiments.paper.quality_report import quality_report
+from carp_experiments.paper.quality import ALGORITHMS, quality_report, quality_row, seeded, summarise
 from carp_experiments.store import Row
 from carp_spec import total_cost
 

@@ -6,8 +6,7 @@ from typing import Literal, TypeAlias
 
 from carp_experiments.paper.adding_time import PAPER, SHOWN, Time
 from carp_experiments.paper.map_cases import FULL_MAP, TENTH_MAP
-from carp_experiments.paper.quality import RIVALS, QualitySummary, Saving
-from carp_experiments.paper.quality_report import FEWEST_SHOWN
+from carp_experiments.paper.quality import FEWEST_SHOWN, RIVALS, QualitySummary, Saving
 from carp_experiments.paper.related_work import FIXED, Related
 from carp_experiments.paper.reuse_counts import PAPERS_SHARES, ReuseOf
 from carp_experiments.statistics import Interval
