@@ -287,7 +287,7 @@ def go(  # noqa: PLR0913 - the campaign's options
         from carp_experiments.redrawing import draw_figures  # noqa: PLC0415 - loads compiled code
 
         write_report(report, name, reported, facts)
-        draw_figures(report, name, report)
+        draw_figures(report, report, names=[name])
     if as_json:
         print_document(msgspec.json.encode({"experiment": name, **facts, "summary": reported.summary}) + b"\n")
         return Answer.of(reported.holds)

@@ -11,7 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from carp_experiments.page import results
-from carp_experiments.redrawing import FIGURES, draw_figures
+from carp_experiments.redrawing import draw_figures
 from carproof.command_line.files import write_whole
 
 TITLE = "Context-aware route planning for automated warehouses: the experiments again"
@@ -56,8 +56,7 @@ def write_printed(folder: Path, stored: Path) -> tuple[Path, Path]:
 
 def write_figures(folder: Path, stored: Path) -> Sequence[Path]:
     """Write each figure of the runs stored in a folder as a PDF, for a paper to print; returns their paths."""
-    runs = [name for name in FIGURES if (stored / f"{name}.json").exists()]
-    return [path for name in runs for path in draw_figures(stored, name, folder, "pdf").values()]
+    return [*draw_figures(stored, folder, "pdf").values()]
 
 
 def machine() -> str:
@@ -97,10 +96,7 @@ def pdf_of(body: str, stored: Path) -> bytes:
     pdf.set_creation_date(datetime(2000, 1, 1, tzinfo=UTC))  # the same bytes for the same runs
     pdf.add_page()
     with TemporaryDirectory() as place:
-        drawn: dict[str, Path] = {}
-        for name in FIGURES:
-            if (stored / f"{name}.json").exists():
-                drawn |= draw_figures(stored, name, Path(place), "png")
+        drawn = draw_figures(stored, Path(place), "png")
         printed = IMAGE.sub(lambda image: f'src="{drawn[image[1]]}" width="{width_of(drawn[image[1]])}"', body)
         for cell in ("td", "th"):
             printed = printed.replace(f'<{cell} style="text-align: right;">', f'<{cell} align="right">')

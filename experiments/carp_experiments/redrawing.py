@@ -1,6 +1,6 @@
 """The figures of stored runs; `python -m carp_experiments.redrawing` draws those of the stored results again."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from carp_experiments.beyond.delayed import DriverOf, execution_figures
@@ -32,15 +32,16 @@ FIGURES: Mapping[str, Callable[[Run], Sequence[Figure]]] = {
 """The figures of a run, by the name of its experiment."""
 
 
-def draw_figures(stored: Path, name: str, folder: Path, ending: str = "svg") -> dict[str, Path]:
-    """Draw the figures of the run stored as `NAME.json`, from the rounded numbers in it; their files by name."""
-    figures = FIGURES[name](read_run(stored / f"{name}.json")) if name in FIGURES else ()
-    files = {each.name: folder / f"{each.name}.{ending}" for each in figures}
-    for each in figures:
-        line_figure(files[each.name], each)
+def draw_figures(stored: Path, folder: Path, ending: str = "svg", names: Iterable[str] = FIGURES) -> dict[str, Path]:
+    """Draw the figures of these runs that are stored as `NAME.json`, from the rounded numbers; their files by name."""
+    files = {}
+    for name in names:
+        if name in FIGURES and (stored / f"{name}.json").exists():
+            for figure in FIGURES[name](read_run(stored / f"{name}.json")):
+                files[figure.name] = folder / f"{figure.name}.{ending}"
+                line_figure(files[figure.name], figure)
     return files
 
 
 if __name__ == "__main__":
-    for name in FIGURES:
-        draw_figures(RESULTS, name, RESULTS)
+    draw_figures(RESULTS, RESULTS)

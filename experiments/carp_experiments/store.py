@@ -3,7 +3,7 @@
 import hashlib
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import closing
 from importlib.metadata import version
 from pathlib import Path
 
@@ -106,21 +106,13 @@ class Store:
 
 def stored_rows(path: Path, campaign: str) -> Mapping[str, Row]:
     """The rows of a campaign by the keys of their cases, whichever version of carproof has computed them."""
-    store = Store(path, campaign, of_any_version=True)
-    try:
+    with closing(Store(path, campaign, of_any_version=True)) as store:
         return dict(store.rows())
-    finally:
-        store.close()
 
 
-@contextmanager
-def open_store(path: Path | None, campaign: str) -> Iterator[Store]:
+def open_store(path: Path | None, campaign: str) -> closing[Store]:
     """Open the store of a campaign, or one in memory if there is no path; it belongs to this version of carproof."""
-    store = Store(path or Path(":memory:"), campaign)
-    try:
-        yield store
-    finally:
-        store.close()
+    return closing(Store(path or Path(":memory:"), campaign))
 
 
 def digest_of(row: Row) -> str:

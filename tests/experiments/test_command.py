@@ -42,5 +42,5 @@ def test_a_report_holds_tables_numbers_and_the_figures_of_the_stored_numbers(car
         "quality.json",
         "quality.md",
     ]
-    draw_figures(Path("report"), "quality", Path("report"))
+    draw_figures(Path("report"), Path("report"))
     assert {path.name: path.read_bytes() for path in Path("report").iterdir()} == written
