@@ -57,11 +57,11 @@ class BenchmarkCase:
     """A case; other planners by their names and programs, and the folder for plans and certificates."""
 
     line: Line
-    maps: str
+    maps: Path
     seconds: tuple[int, ...]
     bound_seconds: int
-    others: tuple[tuple[str, str], ...] = ()
-    plans: str | None = None
+    others: tuple[tuple[str, str], ...]
+    plans: Path | None
 
     @property
     def key(self) -> str:
@@ -70,12 +70,14 @@ class BenchmarkCase:
 
     def run(self) -> Row:
         """The totals and the bound; a total is null where a robot has no plan."""
-        files = files_of(self.line, Path(self.maps))
+        files = files_of(self.line, self.maps)
         instance = read_movingai(files["map"].read_bytes(), files["scen"].read_bytes(), self.line.agents)
         measured: dict[str, int | None] = {}
         for seconds in self.seconds:
             found = carproof.plan_within(instance, seconds=seconds, clock=time.process_time)
-            measured[f"ours {seconds} s"] = self._kept(instance, found, f"{seconds}s")
+            measured[f"ours {seconds} s"] = total = judged(instance, found)
+            if total is not None:
+                self._keep(f"{seconds}s.txt", mapf_tracker.write(instance, found).encode())
             for name, program in self.others:
                 total = total_of(name, program, instance, files, self.line.agents, seconds)
                 measured[f"{name} {seconds} s"] = total
@@ -83,26 +85,19 @@ class BenchmarkCase:
             measured["bound"] = self._bound(instance)
         return {"case": self.key, "lower": self.line.lower, "upper": self.line.upper, MEASURED: measured}
 
-    def _kept(self, instance: Instance, found: Solution, suffix: str) -> int | None:
-        """The judged total of a solution of all robots, which is written."""
-        total = judged(instance, found)
-        if self.plans is not None and total is not None:
-            self._write(f"{suffix}.txt", mapf_tracker.write(instance, found).encode())
-        return total
-
     def _bound(self, instance: Instance) -> int:
-        """The verified bound of a certificate, which is written."""
+        """The verified bound of a certificate, which is kept."""
         from carp_optimum.bound import lower_bound  # noqa: PLC0415 - loads the planners
 
         certificate = lower_bound(instance, self.bound_seconds, clock=time.process_time_ns)
-        if self.plans is not None:
-            self._write("bound.json", write(certificate))
+        self._keep("bound.json", write(certificate))
         return verify_bound(instance, certificate)
 
-    def _write(self, suffix: str, data: bytes) -> None:
-        folder = Path(self.plans or "")
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / f"{self.line.map}-{self.line.scen}-{self.line.agents}-{suffix}").write_bytes(data)
+    def _keep(self, suffix: str, data: bytes) -> None:
+        """Write plans or a certificate, if there is a folder for them."""
+        if self.plans is not None:
+            self.plans.mkdir(parents=True, exist_ok=True)
+            (self.plans / f"{self.line.map}-{self.line.scen}-{self.line.agents}-{suffix}").write_bytes(data)
 
 
 def judged(instance: Instance, solution: Solution) -> int | None:
@@ -203,11 +198,6 @@ def shown(value: object) -> str:
     return "-" if value is None else str(value)
 
 
-def found(program: str) -> str:
-    """The program where it is, as it is run in another folder."""
-    return str(Path(program).absolute()) if Path(program).is_file() else program
-
-
 def benchmark_cases(
     table: Path,
     maps: Path,
@@ -220,6 +210,4 @@ def benchmark_cases(
     lines = read_lines(table)
     for line in lines:
         files_of(line, maps)
-    given = tuple((name, found(program)) for name, program in others.items())
-    folder = None if plans is None else str(plans)
-    return [BenchmarkCase(line, str(maps), tuple(seconds), bound_seconds, given, folder) for line in lines]
+    return [BenchmarkCase(line, maps, tuple(seconds), bound_seconds, tuple(others.items()), plans) for line in lines]

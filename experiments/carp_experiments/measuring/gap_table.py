@@ -58,7 +58,7 @@ GAPS = tuple(Task(map, 100, 20, 60) for map in (20, 15, 10, 5, 0))
 SPLITS = tuple(Task(map, robots, 10, 10, limit=30) for map, robots in ((20, 100), (15, 80), (10, 50), (5, 30), (0, 15)))
 
 
-def measure(task: Task, seed: int) -> Found:
+def measure(task: Task, seed: int, advance: Callable[[], None] = lambda: None) -> Found:
     """Plan and bound one assignment; the bound is verified."""
     instance = task.instance(seed)
     better = anneal(instance, plan(instance), task.seconds, seed=seed, clock=process_time)
@@ -68,6 +68,7 @@ def measure(task: Task, seed: int) -> Found:
     require_kept(bound, total or bound)
     best = optimum(instance, task.limit) if task.limit else None
     least = best.cost if best is not None and best.decided else None
+    advance()
     return Found(lower_bound(instance, steps=0).bound, bound, total, least)
 
 
@@ -99,16 +100,10 @@ def gap_tables(gaps: Sequence[Task], splits: Sequence[Task]) -> tuple[str, str]:
     with progress("measuring gaps", sum(task.seeds for task in chain(gaps, splits))) as advance:
 
         def rows(tasks: Sequence[Task], row: Callable[[Task, Sequence[Found]], Sequence[str]]) -> list[Sequence[str]]:
-            return [row(task, [_measured(task, seed, advance) for seed in range(1, task.seeds + 1)]) for task in tasks]
+            return [row(task, [measure(task, seed, advance) for seed in range(1, task.seeds + 1)]) for task in tasks]
 
         of_gaps = markdown_table(GAP_COLUMNS, rows(gaps, gap_row), numbers=GAP_COLUMNS)
         return of_gaps, markdown_table(SPLIT_COLUMNS, rows(splits, split_row), numbers=SPLIT_COLUMNS)
-
-
-def _measured(task: Task, seed: int, advance: Callable[[], None]) -> Found:
-    found = measure(task, seed)
-    advance()
-    return found
 
 
 def quick(task: Task) -> Task:
