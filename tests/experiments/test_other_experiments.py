@@ -10,6 +10,7 @@ import carp_optimized
 import carp_reference
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
 from carp_experiments.paper import polishing
+from carp_experiments.paper.adding_time import PAPER, time_row
 from carp_experiments.paper.claims import related_claims, reuse_claims
 from carp_experiments.paper.map_cases import MapCase, instance_of
 from carp_experiments.paper.related_work import FIXED, METHODS, Related, related_report, related_row
@@ -18,6 +19,10 @@ from carp_experiments.paper.small_gaps import COMPARED, POLISHED, GapRow, gap_re
 from carp_experiments.statistics import Interval
 from carp_experiments.store import digest_of
 from carp_spec import Carp, FixedPaths, Greedy, LongestFirst, Planner, plan_cost
+
+
+def test_a_robot_alone_is_timed() -> None:
+    assert MapCase(time_row, 15, 0, 1).run()["planned"] == dict.fromkeys(PAPER, 1)
 
 
 def test_queries_are_told_apart_by_what_they_are_for() -> None:

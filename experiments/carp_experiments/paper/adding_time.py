@@ -13,12 +13,12 @@ from time import thread_time_ns
 import msgspec
 
 from carp_experiments.paper.map_cases import MapCase, instance_of
-from carp_experiments.paper.quality import ALGORITHMS, outcome, seeded
+from carp_experiments.paper.quality import ALGORITHMS, outcome, plan_first, seeded
 from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
 from carp_optimized.fleet import PlannedFleet
-from carp_spec import Neighbourhood, Planner, Shuffled
+from carp_spec import Neighbourhood, Planner
 
 STEP = 5
 SHOWN = (50, 100)
@@ -52,12 +52,7 @@ def warm_up(fleet: PlannedFleet, planner: Planner) -> None:
     """Load machine code and find the distances to all goals."""
     robots = len(fleet.instance.robots)
     fleet.carp(range(robots))
-    fleet.clear()
-    if isinstance(planner, Neighbourhood):
-        for robot in range(min(planner.m + 1, robots)):
-            fleet.add(robot, 0, planner)
-    else:
-        plan_first(fleet, planner, 2)
+    plan_first(fleet, planner, min(planner.m + 1 if isinstance(planner, Neighbourhood) else 2, robots))
 
 
 def times_of(fleet: PlannedFleet, planner: Planner) -> dict[str, int]:
@@ -78,17 +73,6 @@ def times_of(fleet: PlannedFleet, planner: Planner) -> dict[str, int]:
         if k in wanted:
             times[str(k)] = thread_time_ns() - started
     return times
-
-
-def plan_first(fleet: PlannedFleet, planner: Planner, k: int) -> None:
-    """Plan the first k robots from scratch."""
-    match planner:
-        case Shuffled():
-            fleet.shuffled(planner, range(k), lambda: None)
-        case _ if planner == ALGORITHMS["LF"]:
-            fleet.carp(sorted(range(k), key=lambda robot: -fleet.ticks_to_goal(robot)))
-        case _:
-            fleet.carp(range(k))
 
 
 @dataclass(frozen=True, slots=True)

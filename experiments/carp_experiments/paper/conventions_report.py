@@ -71,8 +71,7 @@ def conventions_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
 def nearness_of(convention: str, variant: str, stored: Sequence[ConventionsRow], robots: int) -> Nearness:
     """One convention, with the algorithms as published or with the baseline."""
     rows: list[Row] = [
-        {"map": row.map, "assignment": row.assignment, "shortest": 0, "results": row.results[convention]}
-        for row in stored
+        {"map": row.map, "assignment": row.assignment, "results": row.results[convention]} for row in stored
     ]
     summary = summarise(rows, robots)
     claims = (claim for claim in quality_claims(summary) if not claim.claim.startswith("up to"))  # those name a number

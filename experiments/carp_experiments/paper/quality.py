@@ -62,33 +62,34 @@ def quality_row(case: MapCase) -> Row:
     results: dict[str, tuple[int, int]] = {}
     for name, planner in ALGORITHMS.items():
         if name not in BEFORE_FALLBACK:
-            plan_all(fleet, seeded(planner, case.assignment))
+            plan_first(fleet, seeded(planner, case.assignment), case.robots)
             results[name] = outcome(fleet)
         for fallback in [other for other, before in BEFORE_FALLBACK.items() if before == name]:
-            add_until_failure(fleet, seeded(ALGORITHMS[fallback], case.assignment), results[name][0])
+            left = range(results[name][0], case.robots)
+            add_until_failure(fleet, seeded(ALGORITHMS[fallback], case.assignment), left)
             results[fallback] = outcome(fleet)
     return {"shortest": sum(fleet.ticks_to_goal(robot) for robot in range(case.robots)), "results": results}
 
 
-def plan_all(fleet: PlannedFleet, planner: Planner) -> None:
-    """Plan the fleet as `carp_optimized.plan` does, up to the first robot that cannot be added."""
-    everyone = range(len(fleet.instance.robots))
+def plan_first(fleet: PlannedFleet, planner: Planner, count: int) -> None:
+    """Plan the first robots alone, as `carp_optimized.plan` does, up to the first that cannot be added."""
+    robots = range(count)
     match planner:
         case Shuffled():
-            fleet.shuffled(planner, everyone, lambda: None)
+            fleet.shuffled(planner, robots, lambda: None)
         case LongestFirst():
-            fleet.carp(sorted(everyone, key=lambda robot: -fleet.ticks_to_goal(robot)))
+            fleet.carp(sorted(robots, key=lambda robot: -fleet.ticks_to_goal(robot)))
         case Neighbourhood():
             fleet.clear()
-            add_until_failure(fleet, planner, 0)
+            add_until_failure(fleet, planner, robots)
         case _:
-            fleet.carp(everyone)
+            fleet.carp(robots)
 
 
-def add_until_failure(fleet: PlannedFleet, planner: Planner, first: int) -> None:
-    """Add the robots from the first on, until one stays unplanned."""
+def add_until_failure(fleet: PlannedFleet, planner: Planner, robots: Iterable[int]) -> None:
+    """Add robots until one stays unplanned."""
     assert isinstance(planner, Neighbourhood)  # noqa: S101 - a promise of ours
-    for robot in range(first, len(fleet.instance.robots)):
+    for robot in robots:
         if not fleet.add(robot, 0, planner):
             return
 
@@ -162,7 +163,6 @@ class QualityRow(msgspec.Struct, frozen=True):
 
     map: int
     assignment: int
-    shortest: int
     results: dict[str, tuple[int, int]]
 
     def total(self, algorithm: str, robots: int) -> int | None:

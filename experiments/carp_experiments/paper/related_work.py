@@ -12,7 +12,7 @@ from itertools import takewhile
 import msgspec
 
 from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, instance_of, rows_by_map, shown_maps
-from carp_experiments.paper.quality import plan_all
+from carp_experiments.paper.quality import plan_first
 from carp_experiments.report import ExperimentReport, Figure, lines_of, table_by_map
 from carp_experiments.statistics import Interval, mean_interval, proportion_interval
 from carp_experiments.store import Row
@@ -48,7 +48,7 @@ def related_row(case: MapCase) -> Row:
         plans[name] = fleet.plans
     fleet.carp(everyone)
     plans["CARP"] = fleet.plans
-    plan_all(fleet, LongestFirst())
+    plan_first(fleet, LongestFirst(), case.robots)
     plans["LF"] = fleet.plans
     fleet.greedy(lambda: None)
     plans["greedy"] = fleet.plans

@@ -10,7 +10,7 @@ import msgspec
 
 import carp_optimized as engine
 from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, rows_by_map, shown_maps
-from carp_experiments.paper.quality import ALGORITHMS, outcome, plan_all, seeded
+from carp_experiments.paper.quality import ALGORITHMS, outcome, plan_first, seeded
 from carp_experiments.report import ExperimentReport, Figure, lines_of, table_by_map
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
@@ -48,7 +48,7 @@ def gap_row(case: MapCase) -> Row:
         if isinstance(planner, Greedy):
             fleet.greedy(lambda: None)
         else:
-            plan_all(fleet, seeded(planner, case.assignment))
+            plan_first(fleet, seeded(planner, case.assignment), case.robots)
         results[name] = outcome(fleet)
     solution = engine.plan(instance, seeded(COMPARED[GIVEN], case.assignment))
     polished = engine.polish(instance, solution, iterations=ROUNDS, seed=case.assignment)
