@@ -5,7 +5,7 @@ which also tries to plan unplanned robots. Both run for a number of steps, not b
 on any machine. On the paper's maps this is 4 to 49 s of the bound on average, and 1 to 12 s of the long polish.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 from time import process_time_ns
@@ -15,7 +15,7 @@ import msgspec
 import carp_optimized as engine
 from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, instance_of, rows_by_map
 from carp_experiments.paper.quality import ALGORITHMS, seeded
-from carp_experiments.report import ExperimentReport, Figure, Table, lines_of
+from carp_experiments.report import ExperimentReport, Figure, Table, lines_of, table_of
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
 from carp_optimum.bound import lower_bound
@@ -155,8 +155,20 @@ def polish_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
     maps = rows_by_map(rows, PolishRow).items()
     floors = tuple(floor(map, each) for map, each in maps)
     methods = tuple(polished(map, name, each, robots) for map, each in maps for name in METHODS)
-    tables = (gaps_table(methods), bounds_table(floors, methods), failures_table(methods))
-    return ExperimentReport(PolishSummary(floors, methods), tables)
+    gaps = methods_table(
+        "polish-gaps",
+        "Of each method the mean total over the assignments without an unplanned robot, and by how many per cent it is "
+        "above the lower bound, with its 95 % interval if there are several",
+        methods,
+        _gap,
+    )
+    failures = methods_table(
+        "polish-failures",
+        "Assignments with an unplanned robot, and how many such robots an assignment has on average",
+        methods,
+        lambda each: f"{each.failures}/{each.assignments} ({each.unplanned:.2f})",
+    )
+    return ExperimentReport(PolishSummary(floors, methods), (gaps, bounds_table(floors, methods), failures))
 
 
 def floor(map: int, rows: Sequence[PolishRow]) -> Floor:
@@ -198,23 +210,6 @@ def per_cent_above(total: int, least: int) -> float:
     return 100 * (total - least) / max(least, 1)
 
 
-def gaps_table(methods: Sequence[Polished]) -> Table:
-    """The excess of the totals over the bound."""
-    title = (
-        "Of each method the mean total over the assignments without an unplanned robot, and by how many per cent it is "
-        "above the lower bound, with its 95 % interval if there are several"
-    )
-    return methods_table("polish-gaps", title, methods, _gap)
-
-
-def failures_table(methods: Sequence[Polished]) -> Table:
-    """Assignments with an unplanned robot, and how many such robots there are on average."""
-    title = "Assignments with an unplanned robot, and how many such robots an assignment has on average"
-    return methods_table(
-        "polish-failures", title, methods, lambda each: f"{each.failures}/{each.assignments} ({each.unplanned:.2f})"
-    )
-
-
 def methods_table(name: str, title: str, methods: Sequence[Polished], cell: Callable[[Polished], str]) -> Table:
     """A row for each map, a column for each method."""
     columns = ("map", *METHODS)
@@ -225,23 +220,24 @@ def methods_table(name: str, title: str, methods: Sequence[Polished], cell: Call
 
 def bounds_table(floors: Sequence[Floor], methods: Sequence[Polished]) -> Table:
     """The bound, and the number of assignments that the longest polish brings to within 1 % of it, and to it."""
-    columns = ("map", "shortest", "bound", "above it", "within 1 %", "proved", "bound, s", "polish, s")
-    reached = {each.map: each for each in methods if each.method == LONGEST}
-    rows = []
-    for each in floors:
-        here = reached[each.map]
-        planned = here.assignments - here.failures
-        seconds = (f"{each.bounding:.1f}", f"{each.polishing:.1f}")
-        counts = (f"{count}/{planned}" for count in (here.close, here.proved))
-        rows.append(
-            (str(each.map), f"{each.shortest:.0f}", f"{each.bound:.0f}", _per_cent(each.above), *counts, *seconds)
-        )
     title = (
         "Mean sum of shortest paths, mean lower bound and by how many per cent it is above that sum; of the "
         f"assignments without an unplanned robot after {LONGEST}, how many are at most 1 % above the bound, and how "
         "many at it, so that the optimum is proved; mean processor time of the bound, and of this polish"
     )
-    return Table("polish-bounds", title, columns, tuple(rows), columns)
+    longest = {each.map: each for each in methods if each.method == LONGEST}
+    planned = {each.map: each.assignments - each.failures for each in longest.values()}
+    cells: Mapping[str, Callable[[Floor], object]] = {
+        "map": lambda each: each.map,
+        "shortest": lambda each: f"{each.shortest:.0f}",
+        "bound": lambda each: f"{each.bound:.0f}",
+        "above it": lambda each: _per_cent(each.above),
+        "within 1 %": lambda each: f"{longest[each.map].close}/{planned[each.map]}",
+        "proved": lambda each: f"{longest[each.map].proved}/{planned[each.map]}",
+        "bound, s": lambda each: f"{each.bounding:.1f}",
+        "polish, s": lambda each: f"{each.polishing:.1f}",
+    }
+    return table_of("polish-bounds", title, floors, cells)
 
 
 def polish_figures(summary: PolishSummary) -> tuple[Figure, ...]:
