@@ -1,8 +1,10 @@
 """`carproof experiment`: run an experiment of the paper, or continue one."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import wraps
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import click
 import msgspec
@@ -30,7 +32,6 @@ TABLE = click.Path(path_type=Path, dir_okay=False, exists=True)
 AT_LEAST_1 = click.IntRange(min=1)
 PROGRAM = click.Path(dir_okay=False, exists=True, resolve_path=True)
 RECOMPUTED = ("gap", "related", "quality", "time", "polish", "reuse", "neighbours", "nearest")
-F = TypeVar("F", bound=Callable[..., Any])
 
 
 @click.group(
@@ -56,20 +57,43 @@ def command() -> None:
     """
 
 
-def campaign_options(function: F) -> F:
-    """The options that all experiments have."""
-    options = (
-        click.option("--store", type=click.Path(path_type=Path, dir_okay=False), help="Keep the results in this file."),
-        click.option("--report", type=click.Path(path_type=Path, file_okay=False), help="Write tables, figures there."),
-        click.option("--note", default="", help="With --report: on what the run was made, in a sentence."),
-        click.option("--workers", type=AT_LEAST_1, default=1, help="Processes on this machine."),
-        click.option("--backend", type=click.Choice(["loky", "dask"]), default="loky", help="Who computes."),
-        click.option("--scheduler", metavar="ADDRESS", help="The address of the dask scheduler."),
-        click.option("--json", "as_json", is_flag=True, help="Print one document on standard output, nothing else."),
-    )
-    for option in reversed(options):
-        function = option(function)
-    return function
+@dataclass(frozen=True, slots=True)
+class Campaign:
+    """What a command runs: of which identity its store is, the command line, and the size in words."""
+
+    name: str
+    identity: str
+    line: str
+    size: str
+    cases: Sequence[Case]
+    report: Callable[[Iterable[Row]], ExperimentReport]
+
+
+def runs(campaign_of: Callable[..., Campaign]) -> Callable[..., Answer]:
+    """Run the campaign that the function makes of its options; beside them are those that all experiments have."""
+
+    @click.option("--store", type=click.Path(path_type=Path, dir_okay=False), help="Keep the results in this file.")
+    @click.option("--report", type=click.Path(path_type=Path, file_okay=False), help="Write tables, figures there.")
+    @click.option("--note", default="", help="With --report: on what the run was made, in a sentence.")
+    @click.option("--workers", type=AT_LEAST_1, default=1, help="Processes on this machine.")
+    @click.option("--backend", type=click.Choice(["loky", "dask"]), default="loky", help="Who computes.")
+    @click.option("--scheduler", metavar="ADDRESS", help="The address of the dask scheduler.")
+    @click.option("--json", "as_json", is_flag=True, help="Print one document on standard output, nothing else.")
+    @wraps(campaign_of)
+    def run(  # noqa: PLR0913 - one parameter for each option
+        *,
+        store: Path | None,
+        report: Path | None,
+        note: str,
+        workers: int,
+        backend: Backend,
+        scheduler: str | None,
+        as_json: bool,
+        **own: Any,  # noqa: ANN401 - click's
+    ) -> Answer:
+        return go(campaign_of(**own), store, report, note, Workers(workers, backend, scheduler), as_json)
+
+    return run
 
 
 def command_of(experiment: Experiment) -> click.Command:
@@ -94,27 +118,19 @@ def command_of(experiment: Experiment) -> click.Command:
         multiple=True,
         help=f"Only this map ({WAREHOUSE}: a warehouse, {SORTING}: a sorting centre); may be repeated.",
     )
-    @campaign_options
-    def run(
-        quick: bool,
-        assignments: int | None,
-        robots: int | None,
-        maps: tuple[int, ...],
-        **campaign: Any,  # noqa: ANN401 - click's
-    ) -> Answer:
+    @runs
+    def run(quick: bool, assignments: int | None, robots: int | None, maps: tuple[int, ...]) -> Campaign:
         base = experiment.quick if quick else experiment.full
         chosen = tuple(sorted(set(maps))) or base.maps
         profile = Profile(assignments or base.assignments, robots or base.robots, chosen)
         experiment.refuse(profile)
-        identity = f"{experiment.name} of {profile.robots} robots"
-        return go(
+        return Campaign(
             experiment.name,
-            identity,
+            f"{experiment.name} of {profile.robots} robots",
             f"carproof experiment {experiment.name} {profile.options}",
             str(profile),
             experiment.cases(profile),
             lambda rows: experiment.report(rows, profile.robots),
-            **campaign,
         )
 
     return run
@@ -135,19 +151,13 @@ def command_of_questions(campaigns: Mapping[Kind | None, Questions]) -> click.Co
     @click.option("--quick", is_flag=True, help=f"{usual.quick} {what}.")
     @click.option(f"--{what}", "number", type=AT_LEAST_1, default=usual.full, help=f"The number of random {what}.")
     @click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help=f"The seed of the {what}.")
-    @campaign_options
-    def run(
-        quick: bool,
-        number: int,
-        seed: int,
-        kind: Kind | None = None,
-        **campaign: Any,  # noqa: ANN401 - click's
-    ) -> Answer:
+    @runs
+    def run(quick: bool, number: int, seed: int, kind: Kind | None = None) -> Campaign:
         if usual.of_kernel:
             program()  # before the store is there
         asked, size = campaigns[kind], usual.quick if quick else number
         line = f"carproof experiment {usual.name} --{what} {size} --seed {seed}{f' --{kind}' if kind else ''}"
-        return go(usual.name, usual.name, line, f"{size} {what}", asked.cases(size, seed), asked.report, **campaign)
+        return Campaign(usual.name, usual.name, line, f"{size} {what}", asked.cases(size, seed), asked.report)
 
     run.params[3:3] = [
         click.Option([f"--{kind}", "kind"], flag_value=kind, help=KINDS[kind]) for kind in campaigns if kind
@@ -168,7 +178,7 @@ for campaigns in ASKED:
 @click.option("--lacam3", type=PROGRAM, help="The program of LaCAM3, to be compared with.")
 @click.option("--lns2", type=PROGRAM, help="The program of MAPF-LNS2, to be compared with.")
 @click.option("--plans", type=click.Path(path_type=Path, file_okay=False), help="Write plans and certificates there.")
-@campaign_options
+@runs
 def benchmark(  # noqa: PLR0913, PLR0917 - one parameter for each option
     maps: Path,
     bounds: Path,
@@ -177,8 +187,7 @@ def benchmark(  # noqa: PLR0913, PLR0917 - one parameter for each option
     lacam3: str | None,
     lns2: str | None,
     plans: Path | None,
-    **campaign: Any,  # noqa: ANN401 - click's
-) -> Answer:
+) -> Campaign:
     """Plan cases of the MovingAI benchmark, beside the figures of its tracker and other planners.
 
     Robots park. --seconds are of processor time; all plans are judged, and bounds verified.
@@ -189,8 +198,8 @@ def benchmark(  # noqa: PLR0913, PLR0917 - one parameter for each option
     cases = benchmark_cases(bounds, maps, seconds, bound_seconds, others, plans)
     beside = f", beside {' and '.join(others)}" if others else ""
     identity = f"benchmark of {', '.join(map(str, seconds))} s, bounds {bound_seconds} s{beside}"
-    command = f"carproof experiment benchmark {' '.join(f'--seconds {each}' for each in seconds)}"
-    return go("benchmark", identity, command, f"{len(cases)} cases", cases, benchmark_report, **campaign)
+    line = f"carproof experiment benchmark {' '.join(f'--seconds {each}' for each in seconds)}"
+    return Campaign("benchmark", identity, line, f"{len(cases)} cases", cases, benchmark_report)
 
 
 @command.command("recomputed")
@@ -199,15 +208,8 @@ def benchmark(  # noqa: PLR0913, PLR0917 - one parameter for each option
 @click.option("--cases", "count", type=AT_LEAST_1, default=50, show_default=True, help="How many cases.")
 @click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, show_default=True, help="The seed of the draw.")
 @click.option("--robots", type=AT_LEAST_1, help="How many robots the stored run has, if not in full size.")
-@campaign_options
-def recomputed(
-    experiment: str,
-    stored: Path,
-    count: int,
-    seed: int,
-    robots: int | None,
-    **campaign: Any,  # noqa: ANN401 - click's
-) -> Answer:
+@runs
+def recomputed(experiment: str, stored: Path, count: int, seed: int, robots: int | None) -> Campaign:
     """Compute random cases of a stored run again with the reference planner.
 
     STORED is the store of a run of EXPERIMENT. Its bounds, optima, times and polishes are left out, and of the slow
@@ -220,8 +222,8 @@ def recomputed(
     size = robots or next(each.full.robots for each in EXPERIMENTS if each.name == experiment)
     cases = cases_again(experiment, stored_rows(stored, f"{experiment} of {size} robots"), size, count, seed)
     identity = f"{experiment} recomputed with seed {seed}"
-    command = f"carproof experiment recomputed {experiment} {stored.name} --cases {count} --seed {seed}"
-    return go("recomputed", identity, command, f"{count} cases of {experiment}", cases, again_report, **campaign)
+    line = f"carproof experiment recomputed {experiment} {stored.name} --cases {count} --seed {seed}"
+    return Campaign("recomputed", identity, line, f"{count} cases of {experiment}", cases, again_report)
 
 
 @command.command("report")
@@ -250,35 +252,23 @@ def report(stored: Path | None, output: Path) -> Answer:
     return Answer.of(True)
 
 
-def go(  # noqa: PLR0913 - the campaign's options
-    name: str,
-    identity: str,
-    command: str,
-    size: str,
-    cases: Sequence[Case],
-    report_of: Callable[[Iterable[Row]], ExperimentReport],
-    *,
-    store: Path | None,
-    report: Path | None,
-    note: str,
-    workers: int,
-    backend: Backend,
-    scheduler: str | None,
-    as_json: bool,
+def go(
+    campaign: Campaign, store: Path | None, report: Path | None, note: str, workers: Workers, as_json: bool
 ) -> Answer:
     """Run the cases that the store does not have, and report on all cases."""
-    require("joblib", *(["matplotlib"] if report is not None else []), *(["distributed"] if backend == "dask" else []))
-    if backend == "dask" and scheduler is None:
+    is_dask = workers.backend == "dask"
+    require("joblib", *(["matplotlib"] if report is not None else []), *(["distributed"] if is_dask else []))
+    if is_dask and workers.scheduler is None:
         raise click.UsageError("The backend dask needs the address of its --scheduler.")
-    keys = [case.key for case in cases]
-    with open_store(store, identity) as results:
-        with progress(name, len(cases)) as advance:
-            run_campaign(cases, results, Workers(workers, backend, scheduler), advance)
-        reported = report_of(row for _, row in results.rows(keys))
+    keys = [case.key for case in campaign.cases]
+    with open_store(store, campaign.identity) as results:
+        with progress(campaign.name, len(keys)) as advance:
+            run_campaign(campaign.cases, results, workers, advance)
+        reported = campaign.report(row for _, row in results.rows(keys))
         facts = {
-            "command": command,
-            "size": size,
-            "cases": len(cases),
+            "command": campaign.line,
+            "size": campaign.size,
+            "cases": len(keys),
             "digest": results.digest(keys),
             "processor_seconds": round(results.seconds(keys)),
             "note": note,
@@ -286,10 +276,10 @@ def go(  # noqa: PLR0913 - the campaign's options
     if report is not None:
         from carp_experiments.redrawing import draw_figures  # noqa: PLC0415 - loads compiled code
 
-        write_report(report, name, reported, facts)
-        draw_figures(report, report, names=[name])
+        write_report(report, campaign.name, reported, facts)
+        draw_figures(report, report, names=[campaign.name])
     if as_json:
-        print_document(msgspec.json.encode({"experiment": name, **facts, "summary": reported.summary}) + b"\n")
+        print_document(msgspec.json.encode({"experiment": campaign.name, **facts, "summary": reported.summary}) + b"\n")
         return Answer.of(reported.holds)
     for table in reported.tables:
         print_line(f"{table.title}:")
@@ -297,7 +287,7 @@ def go(  # noqa: PLR0913 - the campaign's options
         print_line("")
     for line in reported.lines:
         print_line(line)
-    print_line(f"{size}: digest of {len(cases)} cases {facts['digest']}")
+    print_line(f"{campaign.size}: digest of {len(keys)} cases {facts['digest']}")
     return Answer.of(reported.holds)
 
 
