@@ -1,6 +1,6 @@
 """`carproof experiment`: run an experiment of the paper, or continue one."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
@@ -13,7 +13,7 @@ from carp_experiments.campaign import Backend, Case, Workers, run_campaign
 from carp_experiments.experiments import EXPERIMENTS, Experiment, Profile
 from carp_experiments.measuring.benchmark import benchmark_cases, benchmark_report
 from carp_experiments.measuring.blocks import Questions
-from carp_experiments.measuring.crosscheck_campaign import CROSSCHECKS, Kind
+from carp_experiments.measuring.crosscheck_campaign import CROSSCHECK
 from carp_experiments.measuring.kernel_texts import TEXTS
 from carp_experiments.measuring.kernel_verdicts import VERDICTS
 from carp_experiments.paper.map_cases import SORTING, WAREHOUSE
@@ -136,38 +136,30 @@ def command_of(experiment: Experiment) -> click.Command:
     return run
 
 
-KINDS = {
-    "stops": "Robots have stops; a search tick by tick is asked too.",
-    "groups": "There are groups; searches tick by tick are asked too.",
-}
-
-
-def command_of_questions(campaigns: Mapping[Kind | None, Questions]) -> click.Command:
+def command_of_questions(questions: Questions) -> click.Command:
     """The command of random questions, with an option for each kind of them."""
-    usual = campaigns[None]
-    what, codes = usual.what, "Exit codes: 0 no difference, 1 a difference, 2 bad usage"
+    name, what, codes = questions.name, questions.what, "Exit codes: 0 no difference, 1 a difference, 2 bad usage"
 
-    @click.command(usual.name, help=f"{usual.about}\n\n{codes}{', or no kernel' if usual.of_kernel else ''}.")
-    @click.option("--quick", is_flag=True, help=f"{usual.quick} {what}.")
-    @click.option(f"--{what}", "number", type=AT_LEAST_1, default=usual.full, help=f"The number of random {what}.")
+    @click.command(name, help=f"{questions.about}\n\n{codes}{', or no kernel' if questions.of_kernel else ''}.")
+    @click.option("--quick", is_flag=True, help=f"{questions.quick} {what}.")
+    @click.option(f"--{what}", "number", type=AT_LEAST_1, default=questions.full, help=f"The number of random {what}.")
     @click.option("--seed", type=click.IntRange(0, 2**64 - 1), default=0, help=f"The seed of the {what}.")
     @runs
-    def run(quick: bool, number: int, seed: int, kind: Kind | None = None) -> Campaign:
-        if usual.of_kernel:
+    def run(quick: bool, number: int, seed: int, kind: str | None = None) -> Campaign:
+        if questions.of_kernel:
             program()  # before the store is there
-        asked, size = campaigns[kind], usual.quick if quick else number
-        line = f"carproof experiment {usual.name} --{what} {size} --seed {seed}{f' --{kind}' if kind else ''}"
-        return Campaign(usual.name, usual.name, line, f"{size} {what}", asked.cases(size, seed), asked.report)
+        size = questions.quick if quick else number
+        line = f"carproof experiment {name} --{what} {size} --seed {seed}{f' --{kind}' if kind else ''}"
+        return Campaign(name, name, line, f"{size} {what}", questions.cases(size, seed, kind), questions.report)
 
     run.params[3:3] = [
-        click.Option([f"--{kind}", "kind"], flag_value=kind, help=KINDS[kind]) for kind in campaigns if kind
+        click.Option([f"--{kind}", "kind"], flag_value=kind, help=about) for kind, about in questions.kinds.items()
     ]
     return run
 
 
-ASKED: tuple[Mapping[Kind | None, Questions], ...] = (CROSSCHECKS, {None: VERDICTS}, {None: TEXTS})
-for campaigns in ASKED:
-    command.add_command(command_of_questions(campaigns))
+for asked in (CROSSCHECK, VERDICTS, TEXTS):
+    command.add_command(command_of_questions(asked))
 
 
 @command.command("benchmark")

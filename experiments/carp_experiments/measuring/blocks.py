@@ -5,7 +5,8 @@ on which the programs differ in its `differences`.
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import msgspec
@@ -41,27 +42,27 @@ class BlockCase:
 class Questions:
     """A campaign: `what` is asked, how a block of it is asked, the class of its rows, and their sums in a table.
 
-    `full` and `quick` are how many are asked, and `of_kernel` is whether the kernel is. The name of an option, `kind`,
-    tells campaigns of one name apart.
+    `full` and `quick` are how many are asked, and `of_kernel` is whether the kernel is. `kinds` are other questions
+    that can be asked, each with what is said of it; `ask` then takes one of them.
     """
 
     name: str
     about: str
     what: str
     title: str
-    ask: Callable[[BlockCase], msgspec.Struct]
+    ask: Callable[..., msgspec.Struct]
     row: type[Any]
     sums: Mapping[str, Callable[[Any], int]]
-    kind: str | None = None
+    kinds: Mapping[str, str] = field(default_factory=dict)
     of_kernel: bool = True
     full: int = 1_000_000
     quick: int = 20_000
 
-    def cases(self, number: int, seed: int) -> tuple[BlockCase, ...]:
+    def cases(self, number: int, seed: int, kind: str | None = None) -> tuple[BlockCase, ...]:
         """That many questions, in blocks."""
-        what = self.what if self.kind is None else f"{self.kind} {self.what}"
+        ask, what = (self.ask, self.what) if kind is None else (partial(self.ask, kind=kind), f"{kind} {self.what}")
         firsts = range(0, number, BLOCK)
-        return tuple(BlockCase(self.ask, what, first, min(BLOCK, number - first), seed) for first in firsts)
+        return tuple(BlockCase(ask, what, first, min(BLOCK, number - first), seed) for first in firsts)
 
     def report(self, rows: Iterable[Row]) -> ExperimentReport:
         """The sums, and the questions on which the programs differ."""
