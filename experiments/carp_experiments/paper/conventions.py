@@ -289,11 +289,7 @@ def add_robot(
         members.append(outside.pop(near))
         # line 10: plan the others again
         first = min(near, planned)
-        if convention.failure == "keep":
-            space_time.lay_keeping(world, ints(outside), first)
-            planned = len(outside)
-        else:
-            planned = int(lay(world, ints(outside), first))
+        planned = int(lay(world, ints(outside), first, convention.failure == "keep"))
         copy_plans(world, trajectories, outside[first:planned])
         if planned < len(outside) and convention.failure == "stop":
             break

@@ -201,36 +201,22 @@ def cost_of(world: World, robot: int) -> int:
 
 
 @entry
-def lay(world: World, robots: Ints, first: int) -> int:
+def lay(world: World, robots: Ints, first: int, keeps: bool = False) -> int:
     """Empty the map, reserve the plans of the robots before `first`, and plan the others until one finds no plan.
 
-    Returns how many have one.
+    Returns how many have one. If it `keeps` plans, a robot that finds none keeps the one that it had, which others may
+    meet; all robots have a plan before.
     """
     clear(world)
-    for position in range(robots.size):
-        robot = int(robots[position])
-        if position >= first and not find(world, robot):
-            return position
-        reserve(world, robot, robot)
-    return robots.size
-
-
-@entry
-def lay_keeping(world: World, robots: Ints, first: int) -> int:
-    """The same, but a robot that finds no plan keeps the one that it had, which others may meet. Returns their number.
-
-    All robots have a plan before.
-    """
-    clear(world)
-    kept = 0
     for position in range(robots.size):
         robot = int(robots[position])
         before = world.arrival[robot]
         if position >= first and not find(world, robot):
+            if not keeps:
+                return position
             world.arrival[robot] = before
-            kept += 1
         reserve(world, robot, robot)
-    return kept
+    return robots.size
 
 
 @entry
