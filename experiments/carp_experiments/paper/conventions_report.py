@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 import msgspec
 
-from carp_experiments.paper.claims import Claim, quality_claims
+from carp_experiments.paper.claims import quality_claims
 from carp_experiments.paper.map_cases import FULL_MAP, TENTH_MAP
 from carp_experiments.paper.quality import interval_of_means, summarise
 from carp_experiments.report import ExperimentReport, Table, table_of
@@ -75,7 +75,9 @@ def nearness_of(convention: str, variant: str, stored: Sequence[ConventionsRow],
     ]
     summary = summarise(rows, robots)
     claims = (claim for claim in quality_claims(summary) if not claim.claim.startswith("up to"))  # those name a number
-    verdicts = {claim.claim: verdict_of(claim, variant) for claim in claims}
+    verdicts: dict[str, str] = {
+        claim.claim: claim.with_baseline or claim.verdict if VARIANTS[variant] else claim.verdict for claim in claims
+    }
     savings, intervals, failures = {}, {}, {}
     for map, (_, published) in PAPERS.items():
         names = [name + VARIANTS[variant] for name in published]
@@ -93,11 +95,6 @@ def nearness_of(convention: str, variant: str, stored: Sequence[ConventionsRow],
     distance = sum(apart) + broken if len(apart) == len(saved) else None
     assignments = len({row.assignment for row in stored})
     return Nearness(convention, variant, assignments, savings, intervals, failures, verdicts, broken, distance)
-
-
-def verdict_of(claim: Claim, variant: str) -> str:
-    """The verdict on the algorithms as published, or with the baseline where the claim has one of its own."""
-    return claim.with_baseline or claim.verdict if VARIANTS[variant] else claim.verdict
 
 
 def totals_of(results: Mapping[str, tuple[int, int]], robots: int) -> Totals:

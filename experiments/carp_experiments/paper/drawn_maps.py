@@ -31,20 +31,18 @@ def map_arrays(map: int, tree: str, seed: int) -> tuple[Ints, Ints]:
 def map_edges(map: int, tree: str, seed: int) -> list[tuple[int, int]]:
     """The edges of a map, between indices of cells."""
     if tree == "Kruskal":
-        graph = grid_instance(Grid(SIDE, SIDE, map, seed)).graph
-        return [(graph.index[source], graph.index[target]) for source, target in graph.edges]
-    grid = grid_edges()
+        return generated_edges(map, seed)
+    grid = generated_edges(FULL_MAP)
     stream = splitmix64(seed)
     kept = drawn_tree(grid, tree == "depth first", stream)
     others = shuffle([edge for edge in grid if edge not in kept], stream)
     return sorted(kept | set(others[: len(others) * map // FULL_MAP]))
 
 
-def grid_edges() -> list[tuple[int, int]]:
-    """The edges of the full grid: from each cell to the right, then downwards."""
-    cells = range(SIDE * SIDE)
-    across = [(cell, cell + 1) for cell in cells if cell % SIDE < SIDE - 1]
-    return sorted([*across, *((cell, cell + SIDE) for cell in cells if cell + SIDE in cells)])
+def generated_edges(map: int, seed: int = 0) -> list[tuple[int, int]]:
+    """The edges of a map of the generator, between indices of cells."""
+    graph = grid_instance(Grid(SIDE, SIDE, map, seed)).graph
+    return [(graph.index[source], graph.index[target]) for source, target in graph.edges]
 
 
 def drawn_tree(edges: Sequence[tuple[int, int]], is_depth_first: bool, stream: Iterator[int]) -> set[tuple[int, int]]:
