@@ -1,19 +1,29 @@
 """Replies of programs: decoded to the letter, or refused by a rule with the beginning of what the program wrote."""
 
 import json
+from collections.abc import Callable
 from typing import Any
 
 import pytest
 
 from carproof.conform.answers import Skipped, read_result, result_of
 from carproof.conform.asking.smoke import FIRST_GOES
-from carproof.conform.findings import Category, Fault
+from carproof.conform.findings import Category, Fault, Finding
 
 VISITS = [list(stay) for stay in FIRST_GOES]
 SOLUTION = {"format": "carproof-solution/1", "plans": [{"robot": "new", "visits": VISITS}], "order": ["new"]}
 WHOLE = {**SOLUTION, "unplanned": []}
 OPTIMUM = {"cost": 3, "lower": 3, "decided": True, "solution": WHOLE}
 VERDICT = {"format": "carproof-verdict/1", "valid": True, "cost": 3, "unplanned": 0, "violations": []}
+
+
+def finding_of(read: Callable[..., object], *arguments: object) -> Finding:
+    with pytest.raises(Fault) as refused:
+        read(*arguments)
+    finding = refused.value.finding
+    assert finding.message == finding.message.strip()
+    assert "\n" not in finding.message
+    return finding
 
 
 @pytest.mark.parametrize(
@@ -31,19 +41,19 @@ VERDICT = {"format": "carproof-verdict/1", "valid": True, "cost": 3, "unplanned"
         b'{"id": "1", "result": 1}',
         b'{"id": true, "result": 1}',
         b'{"id": 1, "result": {"a": 1, "a": 2}}',
+        b'{"id": 1, "result": {"pl',
+        b'{"id": 1, "result": {"plan": [["a", 1e999, null]]}}',
     ],
 )
 def test_any_other_response_is_refused(line: bytes) -> None:
-    with pytest.raises(Fault) as refused:
-        result_of(line, 1)
-    assert (refused.value.finding.category, refused.value.finding.rule) == (Category.PROTOCOL_ERROR, "program/response")
+    finding = finding_of(result_of, line, 1)
+    assert (finding.category, finding.rule) == (Category.PROTOCOL_ERROR, "program/response")
 
 
 @pytest.mark.parametrize("error", [b'""', b'{"message": "no"}'])
 def test_an_error_is_a_wrong_answer(error: bytes) -> None:
-    with pytest.raises(Fault) as refused:
-        result_of(b'{"id": 1, "error": ' + error + b"}", 1)
-    assert (refused.value.finding.category, refused.value.finding.rule) == (Category.WRONG_ANSWER, "program/accepts")
+    finding = finding_of(result_of, b'{"id": 1, "error": ' + error + b"}", 1)
+    assert (finding.category, finding.rule) == (Category.WRONG_ANSWER, "program/accepts")
 
 
 def test_a_response_may_skip_with_a_reason() -> None:
@@ -57,6 +67,7 @@ def test_a_response_may_skip_with_a_reason() -> None:
         ("query", {}),
         ("query", {"plan": [["a", 0]]}),
         ("query", {"plan": [["a", True, 1]]}),
+        ("query", {"plan": [["a", 0.0, 1]]}),
         ("query", {"plan": None, "more": 1}),
         ("query", WHOLE),
         ("plan", {"plan": None}),
@@ -69,15 +80,21 @@ def test_a_response_may_skip_with_a_reason() -> None:
     ],
 )
 def test_a_result_of_another_shape_is_refused(op: str, document: Any) -> None:  # noqa: ANN401 - JSON
-    with pytest.raises(Fault) as refused:
-        read_result(op, json.dumps(document).encode())
-    finding = refused.value.finding
+    finding = finding_of(read_result, op, json.dumps(document).encode())
     assert (finding.category, finding.rule) == (Category.PROTOCOL_ERROR, "program/result")
 
 
 @pytest.mark.parametrize("op", ["plan", "query"])
-@pytest.mark.parametrize("data", [b"[" * 100_000, b'{"format": "carproof-solution/1", "order": [1e999]}', b"\xff", b""])
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"[" * 100_000,
+        b"[" * 100_000 + b"]" * 100_000,
+        b'{"format": "carproof-solution/1", "order": [1e999]}',
+        b'{"plan": [["a", 1' + b"0" * 5000 + b", null]]}",
+        b"\xff",
+        b"",
+    ],
+)
 def test_a_result_that_cannot_be_read_is_refused(op: str, data: bytes) -> None:
-    with pytest.raises(Fault) as refused:
-        read_result(op, data)
-    assert refused.value.finding.rule == "program/result"
+    assert finding_of(read_result, op, data).rule == "program/result"
