@@ -13,16 +13,6 @@ from tests.profiles import rest_in
 SERVE = [sys.executable, "-m", "carproof", "serve"]
 
 
-WRONG = """
-import json, sys
-
-for line in sys.stdin:
-    request = json.loads(line)
-    results = {"start": {"name": "mine", "version": "1", "ops": ["query"]}, "stop": {}}
-    print(json.dumps({"id": request["id"], "result": results.get(request["op"], {"plan": 7})}), flush=True)
-"""
-
-
 @pytest.mark.usefixtures("elsewhere")
 @pytest.mark.parametrize("engine", rest_in("ci", [["--engine", "reference"], []], 1))
 def test_carproof_conforms_to_its_strictest_level(process: Run, engine: list[str]) -> None:
@@ -80,7 +70,7 @@ def test_json_and_junit_tell_the_same(process: Run, elsewhere: Path) -> None:
 
 @pytest.mark.usefixtures("elsewhere")
 def test_where_findings_cannot_be_saved_there_is_a_verdict(process: Run) -> None:
-    outcome = process("conform", "--examples", "0", "--save", "/proc/findings", "--", sys.executable, "-c", WRONG)
+    outcome = process("conform --one-shot --examples 0 --save /proc/findings -- false {instance}")
     assert outcome.code == 1
     assert outcome.stderr.startswith("Nothing is saved: /proc/findings/")
     assert outcome.stdout.splitlines()[-2].startswith("DOES NOT CONFORM: ")

@@ -12,18 +12,11 @@ from carp_spec.limits import goals_stand_alone
 from carproof import Carp, Greedy, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Stop, conforms
 from carproof.conform.asking.smoke import EAST, FIRST, FIRST_GOES, WEST, committed, passing_place, row
 from carproof.conform.cases import ASKED_OPS, Case
-from carproof.conform.judging import optimum
 from carproof.conform.judging.claims import FEATURES, Claims, features, is_solvable
 from carproof.conform.levels import Level
 from carproof.conform.programs.function import Function
 from carproof.conform.run import Options, conform
 from carproof.engines import engine_named
-
-
-@pytest.fixture(autouse=True)
-def patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The machine may be busy."""
-    monkeypatch.setattr(optimum, "OPTIMUM_SECONDS", 60)
 
 
 def of(claims: Claims, examples: int = 24) -> Options:

@@ -115,11 +115,7 @@ def test_a_large_failure_is_shrunk_to_the_number_beyond_which_it_shows() -> None
 
 
 UNTIDY = """
-import json, os, pathlib, sys
-from carp_spec.documents.instances import read_instance
-from carp_spec.documents.solutions import write_solution
-from carp_spec import Carp
-import carp_reference
+import os, pathlib, sys
 
 how, source, target = sys.argv[1:]
 folder = pathlib.Path(source).parent

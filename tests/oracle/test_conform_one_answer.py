@@ -15,18 +15,15 @@ from carp_spec.documents.verdicts import VerdictDocument
 from carproof import BoundDocument
 from carproof.conform.answers import Answer
 from carproof.conform.asking.smoke import EAST, FIRST, FIRST_GOES, WEST, Stay, committed, passing_place, row
-from carproof.conform.cases import Case, request_of
+from carproof.conform.cases import Case
 from carproof.conform.judging import gave_up as efforts
 from carproof.conform.judging import optimum as optima
 from carproof.conform.judging.gave_up import Effort, effort, why_undecided
 from carproof.conform.judging.judges import first_finding
 from carproof.conform.levels import Level
 from carproof.optima import OptimumDocument
-from carproof.protocol.ops import OPS
 from carproof.protocol.ops.planning import QueryDocument, query_document
 
-PATIENT = 60
-"""Seconds for an optimum: the machine may be busy."""
 Row: TypeAlias = tuple[Case, Answer, Mapping[Level, str | None]]
 HURRIES: Sequence[Stay] = (("a", 0, 1), ("b", 1, 1), ("c", 1, 2), ("d", 2, 3))
 WESTWARDS: Sequence[Stay] = (("d", 0, 1), ("c", 1, 2), ("b", 2, 3), ("a", 3, 4))
@@ -207,7 +204,7 @@ CHECKS: Sequence[Row] = (
     (CHECK_RIGHT, changed(VALID, violations=VERDICT.violations), {Level.SOUND: "joint/exchange"}),
 )
 OPTIMUM = case("optimum", LAST_FIRST)
-BEST: OptimumDocument = OPS["optimum"].handle(**{**request_of(OPTIMUM), "limit": PATIENT})
+BEST: OptimumDocument = right(OPTIMUM)
 CARP = right(case("plan", LAST_FIRST, planner=Carp()))
 UNDECIDED = claimed(None, None, decided=False, solution=None)
 NONE = claimed(None, None, decided=True, solution=None)
@@ -240,11 +237,6 @@ BOUNDS: Sequence[Row] = (
     (case("bound", ISLANDS), right(case("bound", ISLANDS)), {}),
 )
 ROWS = (*QUERIES, *PLANS, *ADDITIONS, *POLISHES, *CHECKS, *OPTIMA, *BOUNDS)
-
-
-@pytest.fixture(autouse=True)
-def patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(optima, "OPTIMUM_SECONDS", PATIENT)
 
 
 def test_carproof_and_a_plan_that_contradict_each_other_are_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
