@@ -8,26 +8,19 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from msgspec import structs
-from tests.oracle.test_conform_judges import Tampered, as_it_is
+from tests.oracle.test_conform_judges import Tampered, as_it_is, right_reply
 
 from carp_spec import Carp, Instance, Plan, Resource, Robot, Solution, Visit
-from carproof.conform.answers import Answer, Reply
-from carproof.conform.cases import Case, request_of
+from carproof.conform.answers import Reply
+from carproof.conform.cases import Case
 from carproof.conform.judging.claims import EVERYTHING, Claims
 from carproof.conform.levels import Level
 from carproof.conform.run import Options, Report, conform
 from carproof.engines import engine_named
-from carproof.protocol.ops import OPS
-from carproof.protocol.ops.op import Session
 from carproof.protocol.ops.planning import QueryDocument, query_document
 
 BIT_15, BIT_31 = 2**15, 2**31
 Tamper = Callable[[Case], Reply]
-
-
-def rightly(case: Case) -> Answer:
-    reply: Answer = OPS[case.op].call(request_of(case), Session(engine_named(None)))
-    return reply
 
 
 @dataclass(frozen=True)
@@ -51,7 +44,8 @@ class Planted(Tampered):
 
     def ask(self, case: Case, seconds: float | None = None) -> Reply:
         del seconds
-        return self.bug.answer(case) or rightly(case)
+        answer: Reply = self.bug.answer(case) or right_reply(case, None)
+        return answer
 
 
 def alone(case: Case) -> Solution:
@@ -113,7 +107,7 @@ def short_ids(case: Case) -> Reply | None:
 
 def gives_up_late(case: Case) -> Reply | None:
     """A search that ends 500 ticks after the release."""
-    reply = rightly(case)
+    reply = right_reply(case, None)
     assert isinstance(reply, QueryDocument)
     robot = case.instance.robot[case.robot or 0]
     return QueryDocument(None) if reply.plan is not None and reply.plan[-1][1] > robot.release + 500 else None
@@ -121,7 +115,7 @@ def gives_up_late(case: Case) -> Reply | None:
 
 def waits(case: Case) -> Reply | None:
     """A plan that starts a tick later than it could, beyond 40 committed plans."""
-    reply = rightly(case)
+    reply = right_reply(case, None)
     assert isinstance(reply, QueryDocument)
     if len(case.solution.plans) <= 40 or case.now or reply.plan is None or len(reply.plan) < 2:
         return None

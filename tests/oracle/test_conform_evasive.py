@@ -121,19 +121,6 @@ def test_who_answers_anything_gives_wrong_answers(subject: Tampered, rules: set[
     assert {finding.rule for finding in report.findings} & rules
 
 
-@pytest.mark.parametrize("level", [level for level in Level if level > Level.SOUND])
-def test_an_op_that_plans_nobody_shows_no_level_above_sound(level: Level) -> None:
-    subject = Tampered(as_it_is, ("check", "bound"))
-    report = conform(subject, Options(level, examples=20))
-    assert (report.conforms, report.findings) == (False, [])
-    assert report.shortfalls[0].startswith("it offers nothing that shows the level")
-
-
-def test_nothing_is_decided_without_random_cases() -> None:
-    report = conform(Tampered(as_it_is), Options(Level.SOUND, examples=0))
-    assert (report.conforms, report.shortfalls) == (None, [])
-
-
 def right(instance: Instance) -> Solution:
     return carp_reference.plan(instance, Carp())
 

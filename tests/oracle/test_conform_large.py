@@ -5,8 +5,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from tests.oracle.planted import ARRIVES_ONLY, BUGS, Bug, Planted, rightly, run
+from tests.oracle.planted import ARRIVES_ONLY, BUGS, Bug, Planted, beyond, robots, run
 from tests.oracle.running import Run
+from tests.oracle.test_conform_judges import right_reply
 
 from carp_spec import Solution
 from carproof.conform.answers import Reply
@@ -80,9 +81,7 @@ def test_who_gives_up_on_large_cases_has_shown_nothing_about_them() -> None:
     def gives_up(case: Case) -> Reply:
         return Solution((), (), tuple(case.instance.robot))
 
-    lazy = Bug(
-        "gives up", "8 robots", "plan", Level.SOUND, lambda c: gives_up(c) if len(c.instance.robots) > 8 else None
-    )
+    lazy = Bug("gives up", "8 robots", "plan", Level.SOUND, beyond(robots, 8, gives_up))
     report = conform(Planted(lazy), Options(examples=10, large=1.0))
     assert report.conforms
     assert report.large["gave up"]
@@ -95,7 +94,7 @@ def test_right_answers_to_large_cases_pass_at_the_strictest_level() -> None:
     ladder = [rung for rung in rungs(ops, level, 1, whole=False) if rung.robots == SIZES[2]]
     cases = [case for rung in ladder[:45] if (case := large_case(rung, Claims(), classical=False)) is not None]
     assert {case.op for case in cases} == {*ops}
-    assert [case.name for case in cases if first_finding(case, rightly(case), level) is not None] == []
+    assert [case.name for case in cases if first_finding(case, right_reply(case, None), level) is not None] == []
 
 
 def test_a_failure_is_shrunk_until_nothing_can_be_taken_away() -> None:

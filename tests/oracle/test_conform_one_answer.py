@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import msgspec
 import pytest
@@ -67,10 +67,7 @@ def in_order(solution: Solution, *order: str) -> Solution:
     return replace(solution, order=order)
 
 
-def right(asked: Case) -> Any:  # noqa: ANN401 - an answer of the kind that the case asks for
-    return right_reply(asked)
-
-
+right = right_reply
 QUERY = case("query", ALONE)
 QUERY_EXCHANGE = case("query", HEAD_ON, first=FIRST_GOES)
 QUERY_UNDER_WAY = case("query", ALONE, 2, new=FIRST_GOES)

@@ -92,6 +92,7 @@ def test_a_level_is_shown_by_its_own_ops_and_by_plan_where_whole_instances_are_a
         for op in ("check", "query", "plan", "add", "polish", "optimum", "bound"):
             made = report(level, tried("smoke", op), tried(op=op))
             assert made.conforms is (op in JUDGED_OPS[level])
+            assert made.conforms or made.shortfalls[0].startswith("it offers nothing that shows the level")
     assert Options(Level.OPTIMAL, whole=True).ops == ("plan",)
     assert Options(executor=True).ops == ("execute",)
     assert Options(executor=True).statement == EXECUTOR_LEVELS[Level.SOUND] != Options().statement
