@@ -1,14 +1,14 @@
-"""Smaller questions than one that fails: each edit takes one thing away, or several of a kind at once.
+"""Smaller questions than one that fails: each takes one thing away, or several of a kind at once.
 
-An edit gets the smallest question so far and returns a smaller one, or `None` where it has nothing to take away. The
-edits of a kind go from coarse to fine, so that a question of hundreds of robots is small after a few.
+The questions of a kind are made one after the other, each of the smallest that is known by then. They go from coarse to
+fine, so that a question of hundreds of robots is small after a few.
 """
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
-from functools import partial
-from typing import TypeAlias, TypeVar
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import TypeVar
 
 from msgspec import structs
 
@@ -30,27 +30,33 @@ from carp_spec.requests import sound_solution
 from carproof.conform.cases import EXECUTION, NUMBERS, Case, NumberOf, renamed
 from carproof.execution.delays import stuck
 
-Edit: TypeAlias = Callable[[Case], Case | None]
 T = TypeVar("T")
 LONG_ID = 8
 
 
+@dataclass(slots=True)
+class Smallest:
+    """The smallest question so far that fails."""
+
+    case: Case
+
+
 def smallest(case: Case, fails: Callable[[Case], bool], is_over: Callable[[], bool]) -> tuple[Case, bool]:
-    """A question that fails, and whether it is minimal: no edit makes it smaller and keeps the failure.
+    """A question that fails, and whether it is minimal: none that is made of it is smaller and fails.
 
     It is not known to be minimal if the time was over.
     """
+    best = Smallest(case)
     is_moving = True
     while is_moving:
         is_moving = False
         for kind in KINDS:
-            for edit in kind(case):
+            for smaller in kind(best):
                 if is_over():
-                    return case, False
-                smaller = edit(case)
-                if smaller is not None and smaller != case and is_question(smaller) and fails(smaller):
-                    case, is_moving = smaller, True
-    return case, True
+                    return best.case, False
+                if smaller is not None and smaller != best.case and is_question(smaller) and fails(smaller):
+                    best.case, is_moving = smaller, True
+    return best.case, True
 
 
 def is_question(case: Case) -> bool:
@@ -120,51 +126,44 @@ def _with_visits(case: Case, change: Callable[[Visit], Visit]) -> list[Plan]:
     return [Plan(plan.robot, tuple(map(change, plan.visits))) for plan in case.solution.plans]
 
 
-def _fewer_robots(case: Case) -> Iterable[Edit]:
-    def edit(gone: frozenset[RobotId], case: Case) -> Case:
+def _fewer_robots(best: Smallest) -> Iterator[Case]:
+    for gone in _chunks([*best.case.instance.robot]):
+        case = best.case
         robots = tuple(each for each in case.instance.robots if each.id not in gone or each.id == case.robot)
         instance = replace(case.instance, robots=robots)
-        return _made(case, instance, [plan for plan in case.solution.plans if plan.robot in instance.robot])
-
-    return (partial(edit, gone) for gone in _chunks([*case.instance.robot]))
+        yield _made(case, instance, [plan for plan in case.solution.plans if plan.robot in instance.robot])
 
 
-def _fewer_plans(case: Case) -> Iterable[Edit]:
-    def edit(gone: frozenset[RobotId], case: Case) -> Case:
-        return _made(case, case.instance, [plan for plan in case.solution.plans if plan.robot not in gone])
+def _fewer_plans(best: Smallest) -> Iterator[Case]:
+    for gone in _chunks([plan.robot for plan in best.case.solution.plans]):
+        case = best.case
+        yield _made(case, case.instance, [plan for plan in case.solution.plans if plan.robot not in gone])
 
-    return (partial(edit, gone) for gone in _chunks([plan.robot for plan in case.solution.plans]))
 
-
-def _fewer_resources(case: Case) -> Iterable[Edit]:
+def _fewer_resources(best: Smallest) -> Iterator[Case]:
     """Take away resources in which nobody starts, ends or stays."""
-
-    def edit(some: frozenset[ResourceId], case: Case) -> Case:
+    for some in _chunks([*best.case.instance.graph.index]):
+        case, graph = best.case, best.case.instance.graph
         used = {robot.start for robot in case.instance.robots}
         used |= {stop.resource for robot in case.instance.robots for stop in robot.stops}
         used |= {visit.resource for plan in case.solution.plans for visit in plan.visits}
-        stay = {id: id for id in case.instance.graph.index if id in used or id not in some}
-        return _made(case, replace(case.instance, graph=_shrunk(case.instance.graph, stay)))
-
-    return (partial(edit, some) for some in _chunks([*case.instance.graph.index]))
+        stay = {id: id for id in graph.index if id in used or id not in some}
+        yield _made(case, replace(case.instance, graph=_shrunk(graph, stay)))
 
 
-def _shorter_ways(case: Case) -> Iterable[Edit]:
+def _shorter_ways(best: Smallest) -> Iterator[Case | None]:
     """Join resources with those beside them, single ones with each of them and with the first of all."""
-
-    def edit(some: frozenset[ResourceId], into: ResourceId | None, case: Case) -> Case | None:
-        graph = case.instance.graph
+    ids, beside = [*best.case.instance.graph.index], _beside(best.case.instance.graph)
+    for some in _chunks(ids):
+        graph = best.case.instance.graph
         gone = some & graph.index.keys()
-        if not gone or (into is not None and into not in graph.index):
-            return None
-        became = _joined(graph, gone) if into is None else {id: into if id in gone else id for id in graph.index}
-        return _moved(case, became) if len(became) == len(graph.index) else None
-
-    graph, beside = case.instance.graph, _beside(case.instance.graph)
-    yield from (partial(edit, some, None) for some in _chunks([*graph.index]) if len(some) > 1)
-    for id in graph.index:
-        targets = dict.fromkeys([*beside[id], *[*graph.index][:1]])
-        yield from (partial(edit, frozenset([id]), into) for into in targets if into != id)
+        if len(some) > 1 and gone:
+            yield _moved(best.case, _joined(graph, gone))
+    for id in ids:
+        for into in dict.fromkeys([*beside[id], *ids[:1]]):
+            graph = best.case.instance.graph
+            if into != id and {id, into} <= graph.index.keys():
+                yield _moved(best.case, {each: into if each == id else each for each in graph.index})
 
 
 def _beside(graph: ResourceGraph) -> Mapping[ResourceId, list[ResourceId]]:
@@ -203,9 +202,10 @@ def _shrunk(graph: ResourceGraph, became: Mapping[ResourceId, ResourceId]) -> Re
 
 
 def _moved(case: Case, became: Mapping[ResourceId, ResourceId]) -> Case | None:
-    """The question on the graph in which each resource became another one or stayed."""
-    if any(visit.resource not in became for plan in case.solution.plans for visit in plan.visits):
-        return None  # a plan to check may be anywhere
+    """The question on the graph in which each resource became another one or stayed; `None` if something is lost."""
+    visited = {visit.resource for plan in case.solution.plans for visit in plan.visits}
+    if not became.keys() >= visited | case.instance.graph.index.keys():
+        return None  # a resource has no other one, or a plan to check is anywhere
     robots = tuple(_once(each.in_names(became.__getitem__)) for each in case.instance.robots)
     places: dict[tuple[RobotId, int], int] = {}
     plans = []
@@ -224,53 +224,47 @@ def _moved(case: Case, became: Mapping[ResourceId, ResourceId]) -> Case | None:
     return _made(joined, replace(case.instance, graph=_shrunk(case.instance.graph, became), robots=robots), plans)
 
 
-def _fewer_stops(case: Case) -> Iterable[Edit]:
+def _fewer_stops(best: Smallest) -> Iterator[Case]:
     """Take stops but the last, then ticks of service."""
-
-    def edit(robot: RobotId, place: int, step: int | None, case: Case) -> Case | None:
-        stops = case.instance.robot[robot].stops if robot in case.instance.robot else ()
-        if place >= len(stops) - (step is None):
-            return None
-        less = [] if step is None else [Stop(stops[place].resource, stops[place].service - step)]
-        if any(stop.service < 0 for stop in less):
-            return None
-        return _made(case, _with_robot(case, robot, stops=(*stops[:place], *less, *stops[place + 1 :])))
-
-    each = [(robot.id, place, stop) for robot in case.instance.robots for place, stop in enumerate(robot.stops)]
-    yield from (partial(edit, robot, place, None) for robot, place, _ in reversed(each))
-    yield from (partial(edit, robot, place, step) for robot, place, stop in each for step in _steps(stop.service, 0))
+    each = [(robot.id, place, stop) for robot in best.case.instance.robots for place, stop in enumerate(robot.stops)]
+    for id, place, _ in reversed(each):
+        stops = _stops_of(best.case, id)
+        if place < len(stops) - 1:
+            yield _made(best.case, _with_robot(best.case, id, stops=(*stops[:place], *stops[place + 1 :])))
+    for id, place, stop in each:
+        for step in _steps(stop.service, 0):
+            stops = _stops_of(best.case, id)
+            if place < len(stops) and stops[place].service >= step:
+                less = replace(stops[place], service=stops[place].service - step)
+                yield _made(best.case, _with_robot(best.case, id, stops=(*stops[:place], less, *stops[place + 1 :])))
 
 
-def _fewer_edges(case: Case) -> Iterable[Edit]:
-    def edit(gone: frozenset[tuple[ResourceId, ResourceId]], case: Case) -> Case:
-        return _with_graph(case, edges=tuple(edge for edge in case.instance.graph.edges if edge not in gone))
-
-    return (partial(edit, gone) for gone in _chunks(case.instance.graph.edges))
+def _stops_of(case: Case, id: RobotId) -> Sequence[Stop]:
+    return case.instance.robot[id].stops if id in case.instance.robot else ()
 
 
-def _simpler(case: Case) -> Iterable[Edit]:
+def _fewer_edges(best: Smallest) -> Iterator[Case]:
+    for gone in _chunks(best.case.instance.graph.edges):
+        yield _with_graph(best.case, edges=tuple(edge for edge in best.case.instance.graph.edges if edge not in gone))
+
+
+def _simpler(best: Smallest) -> Iterator[Case]:
     """Let robots vanish and edges go both ways; let a robot without plan end where it starts; shorten far ids."""
-
-    def vanish(case: Case) -> Case:
-        return _made(case, replace(case.instance, after_goal="vanish"))
-
-    def both_ways(case: Case) -> Case:
-        edges = {frozenset(edge): edge for edge in case.instance.graph.edges}
-        return _with_graph(case, edges=tuple(edges.values()), directed=False)
-
-    def stay(robot: RobotId, case: Case) -> Case | None:
-        if robot not in case.instance.robot or any(plan.robot == robot for plan in case.solution.plans):
-            return None
-        return replace(case, instance=_with_robot(case, robot, stops=(Stop(case.instance.robot[robot].start),)))
-
-    return (vanish, both_ways, *(partial(stay, robot) for robot in case.instance.robot), _numbered)
+    robots = [*best.case.instance.robot]
+    yield _made(best.case, replace(best.case.instance, after_goal="vanish"))
+    edges = {frozenset(edge): edge for edge in best.case.instance.graph.edges}
+    yield _with_graph(best.case, edges=tuple(edges.values()), directed=False)
+    for id in robots:
+        if id in best.case.instance.robot and all(plan.robot != id for plan in best.case.solution.plans):
+            stays = (Stop(best.case.instance.robot[id].start),)
+            yield replace(best.case, instance=_with_robot(best.case, id, stops=stays))
+    if any(len(str(id)) >= LONG_ID for id in (*best.case.instance.graph.index, *best.case.instance.robot)):
+        yield _numbered(best.case)
 
 
-def _numbered(case: Case) -> Case | None:
-    """The question with 0, 1, 2, ... for the ids of resources and of robots, if some are long."""
+def _numbered(case: Case) -> Case:
+    """The question with 0, 1, 2, ... for the ids of resources and of robots."""
     instance, solution = case.instance, case.solution
-    if all(len(str(id)) < LONG_ID for id in (*instance.graph.index, *instance.robot)):
-        return None
     place: dict[ResourceId, ResourceId] = {**instance.graph.index}
     number: dict[RobotId, RobotId] = {robot: position for position, robot in enumerate(instance.robot)}
 
@@ -292,13 +286,14 @@ def _numbered(case: Case) -> Case | None:
     )
 
 
-def _smaller_numbers(case: Case) -> Iterable[Edit]:
+def _smaller_numbers(best: Smallest) -> Iterator[Case]:
     """Each number of resources and robots, for many at once and then alone."""
+    instance = best.case.instance
     for of in NUMBERS:
-        values = of.values(case.instance)
+        values = of.values(instance)
         for some in _chunks([*values]):
-            steps = _steps(max(values[id] for id in some), of.number.least)
-            yield from (partial(_with_less, of, some, step) for step in steps)
+            for step in _steps(max(values[id] for id in some), of.number.least):
+                yield _with_less(of, some, step, best.case)
 
 
 def _with_less(of: NumberOf, some: frozenset[ResourceId], step: int, case: Case) -> Case:
@@ -321,18 +316,14 @@ def _with_less(of: NumberOf, some: frozenset[ResourceId], step: int, case: Case)
     return _made(case, instance, plans)
 
 
-def _sooner(case: Case) -> Iterable[Edit]:
+def _sooner(best: Smallest) -> Iterator[Case]:
     """Take ticks out of the times between events: all that comes later comes sooner."""
-
-    def edit(number: int, step: int, case: Case) -> Case | None:
-        events = _events(case)
-        if number >= len(events) or events[number] - step < events[number - 1]:
-            return None
-        return _shifted(case, events[number], step)
-
-    events = _events(case)
-    for number in range(1, len(events)):
-        yield from (partial(edit, number, step) for step in _steps(events[number], events[number - 1]))
+    before = _events(best.case)
+    for number in range(1, len(before)):
+        for step in _steps(before[number], before[number - 1]):
+            events = _events(best.case)
+            if number < len(events) and events[number] - step >= events[number - 1]:
+                yield _shifted(best.case, events[number], step)
 
 
 def _events(case: Case) -> list[int]:
@@ -355,41 +346,36 @@ def _shifted(case: Case, since: int, step: int) -> Case:
     return replace(case, now=sooner(case.now), solution=solution, instance=replace(case.instance, robots=robots))
 
 
-def _fewer_visits(case: Case) -> Iterable[Edit]:
+def _fewer_visits(best: Smallest) -> Iterator[Case]:
     """Let a robot with a plan start at its second place, or end at its last but one."""
-
-    def edit(robot: RobotId, at_start: bool, case: Case) -> Case | None:
-        visits = next((plan.visits for plan in case.solution.plans if plan.robot == robot), ())
-        if len(visits) < 2 or any(late == robot for late, _, _ in case.delays):  # noqa: PLR2004 - one visit must stay
-            return None
+    for id, at_start in product([plan.robot for plan in best.case.solution.plans], (False, True)):
+        case = best.case
+        visits = next((plan.visits for plan in case.solution.plans if plan.robot == id), ())
+        if len(visits) < 2 or any(late == id for late, _, _ in case.delays):  # noqa: PLR2004 - one visit must stay
+            continue
         left = visits[1:] if at_start else visits[:-1]
         ends = {"start": left[0].resource, "release": left[0].enter} if at_start else {"goal": left[-1].resource}
-        plans = [Plan(robot, left) if plan.robot == robot else plan for plan in case.solution.plans]
-        return _made(case, _with_robot(case, robot, **ends), plans)
-
-    return (partial(edit, plan.robot, at_start) for plan in case.solution.plans for at_start in (False, True))
+        plans = [Plan(id, left) if plan.robot == id else plan for plan in case.solution.plans]
+        yield _made(case, _with_robot(case, id, **ends), plans)
 
 
-def _earlier_now(case: Case) -> Iterable[Edit]:
-    def edit(step: int, case: Case) -> Case | None:
-        return replace(case, now=case.now - step) if step <= case.now else None
-
-    return (partial(edit, step) for step in _steps(case.now, 0))
-
-
-def _fewer_delays(case: Case) -> Iterable[Edit]:
-    def edit(number: int, step: int, case: Case) -> Case | None:
-        if number >= len(case.delays):
-            return None
-        robot, visit, ticks = case.delays[number]
-        less = ((robot, visit, ticks - step),) if ticks > step else ()
-        return replace(case, delays=(*case.delays[:number], *less, *case.delays[number + 1 :]))
-
-    steps = ((number, step) for number, each in enumerate(case.delays) for step in _steps(each[2], 0))
-    return (partial(edit, number, step) for number, step in steps)
+def _earlier_now(best: Smallest) -> Iterator[Case]:
+    for step in _steps(best.case.now, 0):
+        if step <= best.case.now:
+            yield replace(best.case, now=best.case.now - step)
 
 
-KINDS: Sequence[Callable[[Case], Iterable[Edit]]] = (
+def _fewer_delays(best: Smallest) -> Iterator[Case]:
+    for number, (_, _, most) in enumerate(best.case.delays):
+        for step in _steps(most, 0):
+            delays = best.case.delays
+            if number < len(delays):
+                robot, visit, ticks = delays[number]
+                less = ((robot, visit, ticks - step),) if ticks > step else ()
+                yield replace(best.case, delays=(*delays[:number], *less, *delays[number + 1 :]))
+
+
+KINDS: Sequence[Callable[[Smallest], Iterator[Case | None]]] = (
     _fewer_robots,
     _fewer_plans,
     _fewer_resources,
