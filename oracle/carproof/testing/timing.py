@@ -10,12 +10,12 @@ from carp_spec.windows import Window, stay_fits
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A window of the path's next resource, entered at `enter` from the entry `before`."""
+    """A window of the path's next resource, entered at `enter` after the visits `before`."""
 
     resource: ResourceId
     window: Window
     enter: int
-    before: "Entry | None"
+    before: tuple[Visit, ...] = ()
 
 
 def path_between(graph: ResourceGraph, source: ResourceId, target: ResourceId) -> tuple[ResourceId, ...]:
@@ -67,7 +67,7 @@ def timed_plan(
     context = context_of(instance, committed)
     release = instance.robot[robot].release
     entries = [
-        Entry(path[0], window, release, None)
+        Entry(path[0], window, release)
         for window in context.windows(path[0])
         if stay_fits(window, release, release + stays[0], stays[0])
     ]
@@ -78,7 +78,8 @@ def timed_plan(
     if not entries:
         return None
     last = min(entries, key=lambda entry: entry.enter)
-    return Plan(robot, _visits(last, None if instance.after_goal == "park" else last.enter + stays[-1]))
+    leave = None if instance.after_goal == "park" else last.enter + stays[-1]
+    return Plan(robot, (*last.before, Visit(last.resource, last.enter, leave)))
 
 
 def _next_entries(
@@ -93,15 +94,7 @@ def _next_entries(
             while context.is_exchange(enter, entry.resource, resource):
                 enter += 1
             if entry.window.lasts_until(enter) and stay_fits(window, enter, enter + stay, stay):
-                possible.append(Entry(resource, window, enter, entry))
+                visits = (*entry.before, Visit(entry.resource, entry.enter, enter))
+                possible.append(Entry(resource, window, enter, visits))
         following.extend(sorted(possible, key=lambda entry: entry.enter)[:1])
     return following
-
-
-def _visits(last: Entry, leave: int | None) -> tuple[Visit, ...]:
-    visits = [Visit(last.resource, last.enter, leave)]
-    entry = last
-    while entry.before is not None:
-        visits.append(Visit(entry.before.resource, entry.before.enter, entry.enter))
-        entry = entry.before
-    return tuple(reversed(visits))
