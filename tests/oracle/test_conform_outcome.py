@@ -5,7 +5,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from tests.oracle.test_conform_one_answer import BEST, OPTIMUM, PLAN, QUERY, UNDECIDED, goes
+from tests.oracle.test_conform_one_answer import BEST, OPTIMUM, QUERY, UNDECIDED, goes
 
 from carp_spec import Instance, Solution
 from carproof.conform.answers import Reply, Skipped
@@ -77,13 +77,10 @@ def test_a_planner_of_documents_is_one_of_models() -> None:
         assert words in finding.message
 
 
-def test_a_function_is_asked_for_plans_by_a_planner_of_its_own_alone() -> None:
+def test_a_function_gets_an_instance_of_its_own() -> None:
     asked: list[Instance] = []
     function = Function(lambda instance: (asked.append(instance), PLANNED)[1], "mine")  # type: ignore[func-returns-value]
     assert (function.name, function.ops) == ("mine", ("plan",))
-    for other in (QUERY, PLAN, OPTIMUM):
-        assert function.ask(other) == Skipped("it plans whole instances, by a planner of its own", asked=False)
-    assert asked == []
     assert function.ask(ALONE) == PLANNED
     assert (asked, asked[0] is ALONE.instance) == ([ALONE.instance], False)
 

@@ -26,10 +26,11 @@ def why_undecided(case: Case, answer: Answer, level: Level) -> str | None:
     """The reason why a right answer does not count: it is undecided, or carproof cannot decide it."""
     if case.op not in ("plan", "optimum") or case.planner is not None or level < Level.COMPLETE:
         return None
-    is_open = isinstance(answer, OptimumDocument) and not answer.decided
-    if is_open and (level >= Level.OPTIMAL or not _plans_all(answer)):
+    if level < Level.OPTIMAL and _plans_all(answer):
+        return None
+    if isinstance(answer, OptimumDocument) and not answer.decided:
         return "it leaves the optimum undecided"
-    if (level >= Level.OPTIMAL or not _plans_all(answer)) and not found_cost(case.instance)[0]:
+    if not found_cost(case.instance)[0]:
         return f"carproof does not find the optimum in {OPTIMUM_SECONDS} s, with which to compare"
     return None
 

@@ -9,7 +9,7 @@ import msgspec
 from carp_spec import Solution
 from carp_spec.documents.instances import read_instance, write_instance
 from carp_spec.documents.solutions import write_solution
-from carproof.conform.answers import Reply, Skipped, Subject, decode_solution, protocol_error
+from carproof.conform.answers import Reply, Subject, decode_solution, protocol_error
 from carproof.conform.cases import Case
 from carproof.conform.findings import RIGHT_RESULT, Category, Fault, Finding, is_alive
 
@@ -30,8 +30,6 @@ class Function(Subject):
     def ask(self, case: Case, seconds: float | None = None) -> Reply:
         """Call the function."""
         del seconds
-        if case.op != "plan" or case.planner is not None:
-            return Skipped("it plans whole instances, by a planner of its own", asked=False)
         instance = write_instance(case.instance)
         try:
             planned = self._planner(msgspec.json.decode(instance) if self._documents else read_instance(instance))

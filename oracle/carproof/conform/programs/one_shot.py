@@ -71,8 +71,6 @@ class OneShot(Subject):
 
     def ask(self, case: Case, seconds: float | None = None) -> Reply:
         """Run the program on the case's instance."""
-        if case.op != "plan" or case.planner is not None:
-            return Skipped("it plans whole instances, by a planner of its own", asked=False)
         if self.is_classical and not is_classical(case.instance):
             return Skipped("it plans classical grids", asked=False)
         with _folder() as folder:

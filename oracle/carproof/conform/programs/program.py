@@ -40,7 +40,6 @@ class Program(Subject):
         self._ids = request_ids(seed)
         self._child: Child | None = None
         self.name = command[0]
-        self.ops = ()
 
     def start(self) -> None:
         """Start the process and learn its ops; raises `Fault` if it does not say them."""

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 from xml.sax.saxutils import escape
 
 import click
@@ -14,7 +14,6 @@ from carp_spec.documents.instances import instance_document, write_instance
 from carp_spec.documents.solutions import solution_of, write_solution
 from carp_spec.execution.traces import Trace
 from carproof.command_line.files import write_whole
-from carproof.conform.answers import Answer
 from carproof.conform.cases import POLISH_ROUNDS, Case, request_fields
 from carproof.conform.judging.claims import features
 from carproof.conform.judging.outcome import Outcome
@@ -168,7 +167,7 @@ def vectors_document(outcome: Outcome) -> dict[str, Any]:
         "op": case.op,
         "instance": instance_document(case.instance),
         "input": {name: value for name, value in request_fields(case).items() if name != "instance"},
-        "claim": None if outcome.answer is None else claim(outcome.answer),
+        "claim": None if outcome.answer is None else msgspec.to_builtins(made(outcome.answer)),
         "expected": "invalid",
         "violated": [finding.rule],
         "answer": right_answer(case),
@@ -176,11 +175,6 @@ def vectors_document(outcome: Outcome) -> dict[str, Any]:
         "comment": f"{finding.category}: {finding.message}",
     }
     return {"format": "carproof-vectors/1", "subject": finding.rule, "flags": {}, "cases": [vector]}
-
-
-def claim(answer: Answer) -> dict[str, Any]:
-    """A program's answer as the result in its response."""
-    return cast("dict[str, Any]", msgspec.to_builtins(made(answer)))
 
 
 def right_answer(case: Case) -> dict[str, Any]:
