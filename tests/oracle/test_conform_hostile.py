@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from tests.oracle.test_signals import processes_of
 
 from carproof.conform.asking.smoke import smoke_cases
 from carproof.conform.cases import Case
@@ -20,9 +21,7 @@ from carproof.conform.programs.child import Child, Limits
 from carproof.conform.programs.program import Program
 from carproof.conform.run import Options, Report, conform
 
-OWNER = f"-Xowner={os.getpid()}"
-"""Python takes it and does nothing with it: other test processes run the same program at the same time."""
-HOSTILE = [sys.executable, "-IS", OWNER, str(Path(__file__).with_name("hostile.py"))]
+HOSTILE = [sys.executable, "-IS", str(Path(__file__).with_name("hostile.py"))]
 LIMITS = Limits(seconds=0.5, memory=128, output=2**20)
 GENEROUS = 20.0
 """Seconds after which a test calls it a hang: the machine may be busy."""
@@ -44,35 +43,24 @@ HOW = {
 }
 
 
-def descriptors() -> int:
-    return len(list(Path("/proc/self/fd").iterdir()))
-
-
-def hostile_processes() -> list[str]:
-    """The processes that run the hostile program, zombies included."""
-    found = []
-    for folder in Path("/proc").iterdir():
-        if folder.name.isdigit():
-            try:
-                line = (folder / "cmdline").read_bytes()
-                parent = (folder / "stat").read_text().rpartition(")")[2].split()[1]
-            except OSError:
-                continue
-            is_ours = f"\0{OWNER}\0".encode() in line
-            if is_ours or (not line and parent == str(os.getpid())):
-                found.append(folder.name)
-    return found
+def opened() -> tuple[int, str]:
+    """The number of this process's descriptors, and its children, zombies included."""
+    children = Path(f"/proc/self/task/{os.getpid()}/children").read_text()
+    return len(list(Path("/proc/self/fd").iterdir())), children
 
 
 @pytest.fixture(autouse=True)
-def nothing_left() -> Iterator[None]:
-    before, started = descriptors(), time.monotonic()
-    yield
+def marker(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """What the environment of all processes of a test has; afterwards nothing of them is left."""
+    name, value = "OF_TEST", f"{os.getpid()}-{time.monotonic_ns()}"
+    monkeypatch.setenv(name, value)
+    marker, before, started = f"{name}={value}", opened(), time.monotonic()
+    yield marker
     assert time.monotonic() - started < GENEROUS
-    assert descriptors() == before
-    while hostile_processes() and time.monotonic() - started < GENEROUS:
+    while processes_of(marker) and time.monotonic() - started < GENEROUS:
         time.sleep(0.05)
-    assert hostile_processes() == []
+    assert processes_of(marker) == []
+    assert opened() == before
 
 
 def query() -> Case:
@@ -153,11 +141,13 @@ def test_a_program_that_cannot_be_run_is_a_crash() -> None:
 
 
 @pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGTERM])
-def test_an_interruption_leaves_no_child_and_ends_with_what_was_found(stop: signal.Signals, tmp_path: Path) -> None:
+def test_an_interruption_leaves_no_child_and_ends_with_what_was_found(
+    stop: signal.Signals, marker: str, tmp_path: Path
+) -> None:
     command = [sys.executable, "-m", "carproof", "conform", "--timeout", "60", "--", *HOSTILE, "silence"]
     with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         deadline = time.monotonic() + GENEROUS
-        while len(hostile_processes()) < 3 and time.monotonic() < deadline:
+        while len(processes_of(marker)) < 3 and time.monotonic() < deadline:
             time.sleep(0.05)
         time.sleep(0.3)
         process.send_signal(stop)
