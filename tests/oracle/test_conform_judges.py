@@ -8,10 +8,7 @@ from typing import Any
 
 import msgspec
 import pytest
-from msgspec import structs
 
-import carp_reference
-from carp_spec import Plan, Solution
 from carp_spec.documents.vectors import VectorsDocument
 from carproof.conform.answers import Reply, Subject
 from carproof.conform.cases import ASKED_OPS, Case, request_fields, request_of
@@ -21,9 +18,8 @@ from carproof.conform.run import Options, Report, conform
 from carproof.engines import engine_named
 from carproof.protocol.ops import OPS
 from carproof.protocol.ops.op import Session
-from carproof.protocol.ops.planning import QueryDocument, query_document
+from carproof.protocol.ops.planning import QueryDocument
 
-LATE = {"query/optimal", "joint/capacity", "joint/exchange", "fleet/history"}
 Tamper = Callable[[Case, Reply], Reply]
 
 
@@ -55,32 +51,8 @@ def run(tamper: Tamper, level: Level, ops: tuple[str, ...] = ASKED_OPS, examples
     return conform(subject, Options(level, examples, shrink_seconds=1))
 
 
-def later(plan: Plan) -> Plan:
-    """The plan with one more tick in its first resource of several."""
-    first, *rest = plan.visits
-    if not rest or first.leave is None:
-        return plan
-    delayed = [
-        structs.replace(visit, enter=visit.enter + 1, leave=None if visit.leave is None else visit.leave + 1)
-        for visit in rest
-    ]
-    return Plan(plan.robot, (structs.replace(first, leave=first.leave + 1), *delayed))
-
-
 def no_plan(_: Case, reply: Reply) -> Reply:
     return QueryDocument(None) if isinstance(reply, QueryDocument) else reply
-
-
-def late_plan(case: Case, reply: Reply) -> Reply:
-    assert case.robot is not None
-    plan = reply.plan_of(case.robot) if isinstance(reply, QueryDocument) else None
-    return reply if plan is None else query_document(later(plan))
-
-
-def polishes_into_each_other(case: Case, _: Reply) -> Reply:
-    """Every robot goes as if it were alone."""
-    alone = [carp_reference.query(case.instance, (), robot) for robot in case.instance.robot]
-    return Solution.of(case.instance, [plan for plan in alone if plan is not None])
 
 
 def as_it_is(_: Case, reply: Reply) -> Reply:

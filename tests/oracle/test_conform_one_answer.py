@@ -6,7 +6,7 @@ from typing import TypeAlias
 
 import msgspec
 import pytest
-from tests.oracle.test_conform_judges import later, right_reply
+from tests.oracle.test_conform_judges import right_reply
 
 import carp_verify.bound.verify
 from carp_spec import Carp, Greedy, Instance, Neighbourhood, Plan, Planner, Resource, ResourceGraph, Robot, Solution
@@ -23,6 +23,7 @@ from carproof.conform.judging.judges import first_finding
 from carproof.conform.levels import Level
 from carproof.optima import OptimumDocument
 from carproof.protocol.ops.planning import QueryDocument, query_document
+from carproof.testing.mutations import later as moved
 
 Row: TypeAlias = tuple[Case, Answer, Mapping[Level, str | None]]
 HURRIES: Sequence[Stay] = (("a", 0, 1), ("b", 1, 1), ("c", 1, 2), ("d", 2, 3))
@@ -55,6 +56,13 @@ def plan(robot: str, *stays: Stay) -> Plan:
     return committed(ALONE, **{robot: stays}).plans[0]
 
 
+def later(plan: Plan) -> Plan:
+    """The plan with one more tick in its first resource."""
+    first, *_ = plan.visits
+    assert first.leave is not None
+    return Plan(plan.robot, (changed(first, leave=first.leave + 1), *moved(plan.visits[1:], 1)))
+
+
 def goes(*stays: Stay) -> QueryDocument:
     return query_document(plan("new", *stays))
 
@@ -68,6 +76,7 @@ def in_order(solution: Solution, *order: str) -> Solution:
 
 
 right = right_reply
+changed = msgspec.structs.replace
 QUERY = case("query", ALONE)
 QUERY_EXCHANGE = case("query", HEAD_ON, first=FIRST_GOES)
 QUERY_UNDER_WAY = case("query", ALONE, 2, new=FIRST_GOES)
@@ -153,7 +162,6 @@ ADD_ANYHOW = replace(ADD, planner=Neighbourhood(baseline=False))
 ADD_LATE = replace(ADD, now=2)
 ADD_SLOW = case("add", BEHIND, planner=Neighbourhood(), first=WAITS)
 ADDED = committed(BEHIND, first=FIRST_GOES, new=BEHIND_GOES)
-LATE = committed(BEHIND, first=FIRST_GOES, new=[("b", 0, 1), ("c", 1, 2), ("d", 2, 2 + 1)])
 ADDITIONS: Sequence[Row] = (
     (ADD, right(ADD), {}),
     (ADD_SLOW, right(ADD_SLOW), {}),
@@ -185,7 +193,6 @@ CHECK = case("check", HEAD_ON, first=FIRST_GOES, new=WESTWARDS)
 CHECK_RIGHT = case("check", BEHIND, first=FIRST_GOES)
 VERDICT: VerdictDocument = right(CHECK)
 VALID: VerdictDocument = right(CHECK_RIGHT)
-changed = msgspec.structs.replace
 (EXCHANGE,) = VERDICT.violations
 CHECKS: Sequence[Row] = (
     (CHECK, VERDICT, {}),
