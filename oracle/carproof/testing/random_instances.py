@@ -28,7 +28,7 @@ from carp_spec.model import Following
 from carp_spec.permutations import shuffle, splitmix64
 from carp_spec.planners import LARGEST_SEED
 from carp_spec.shapes import numbers_of
-from carproof.testing.timing import path_over, serving, timed_plan
+from carproof.testing.timing import path_over, timed_plan
 
 T = TypeVar("T")
 
@@ -234,9 +234,6 @@ def draw_fleet(draw: Draw, instance: Instance) -> FleetUnderWay:
 def draw_plan(draw: Draw, instance: Instance, committed: Sequence[Plan], robot: Robot) -> Plan | None:
     """A plan over some resource that stays longer than needed in each; `None` if there is no way, or none is free."""
     over = draw.one_of(instance.graph.resources).id
-    path = path_over(instance.graph, robot, over) or path_over(instance.graph, robot, robot.start)
-    if not path:
-        return None
+    path = path_over(instance.graph, robot, over)
     waits = [draw.between(0, 2) if draw.happens(2) else 0 for _ in path[1:]] + [0]
-    stays = serving(instance, robot, path, waits)
-    return timed_plan(instance, committed, robot.id, path, stays)
+    return timed_plan(instance, committed, robot, path, waits)

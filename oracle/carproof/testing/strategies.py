@@ -35,7 +35,7 @@ from carp_spec import (
 from carp_spec.shapes import numbers_of
 from carproof.testing.mutations import MUTATIONS, BrokenSolution
 from carproof.testing.random_instances import FleetUnderWay
-from carproof.testing.timing import path_over, serving, timed_plan
+from carproof.testing.timing import path_over, timed_plan
 
 __all__ = [
     "BrokenSolution",
@@ -197,10 +197,8 @@ def committed_plans(
     for robot in draw(st.permutations([robot for robot in instance.robots if robot.id != without])):
         path = draw(_paths(instance.graph, robot))
         waits = draw(st.lists(st.integers(0, sizes.wait), min_size=len(path), max_size=len(path)))
-        if path:
-            waits[-1] = 0
-            plan = timed_plan(instance, plans, robot.id, path, serving(instance, robot, path, waits))
-            plans = plans if plan is None else (*plans, plan)
+        plan = timed_plan(instance, plans, robot, path, [*waits[:-1], 0])
+        plans = plans if plan is None else (*plans, plan)
     return plans
 
 
@@ -208,7 +206,7 @@ def committed_plans(
 def _paths(draw: st.DrawFn, graph: ResourceGraph, robot: Robot) -> tuple[ResourceId, ...]:
     """A path over the robot's stops, and before them over a drawn resource if one exists, or no resource."""
     over = draw(st.sampled_from([robot.start, *graph.index]))
-    return path_over(graph, robot, over) or path_over(graph, robot, robot.start)
+    return path_over(graph, robot, over)
 
 
 def solutions(instance: Instance, sizes: Sizes = SMALL) -> st.SearchStrategy[Solution]:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from carp_reference.context import Context, context_of
-from carp_spec import Instance, Plan, ResourceGraph, ResourceId, Robot, RobotId, Visit
+from carp_spec import Instance, Plan, ResourceGraph, ResourceId, Robot, Visit
 from carp_spec.windows import Window, stay_fits
 
 
@@ -30,17 +30,17 @@ def path_between(graph: ResourceGraph, source: ResourceId, target: ResourceId) -
 
 
 def path_over(graph: ResourceGraph, robot: Robot, over: ResourceId) -> tuple[ResourceId, ...]:
-    """A path from the robot's start over a resource and then its stops, or no resource at all if none exists."""
+    """A path from the robot's start over a resource, if that is possible, and its stops; `()` if none exists."""
     path = [robot.start]
     for target in (over, *(stop.resource for stop in robot.stops)):
         further = path_between(graph, path[-1], target)
         if not further:
-            return ()
+            return () if over == robot.start else path_over(graph, robot, robot.start)
         path.extend(further[1:])
     return tuple(path)
 
 
-def serving(instance: Instance, robot: Robot, path: Sequence[ResourceId], waits: Sequence[int]) -> list[int]:
+def _stays(instance: Instance, robot: Robot, path: Sequence[ResourceId], waits: Sequence[int]) -> list[int]:
     """The least stays of a robot on a path over its stops, each longer by a wait; it serves each where it may."""
     stays = [instance.duration(robot.id, resource) + wait for resource, wait in zip(path, waits, strict=True)]
     *first, last = robot.stops
@@ -54,18 +54,16 @@ def serving(instance: Instance, robot: Robot, path: Sequence[ResourceId], waits:
 
 
 def timed_plan(
-    instance: Instance,
-    committed: Sequence[Plan],
-    robot: RobotId,
-    path: Sequence[ResourceId],
-    stays: Sequence[int],
+    instance: Instance, committed: Sequence[Plan], robot: Robot, path: Sequence[ResourceId], waits: Sequence[int]
 ) -> Plan | None:
-    """The plan along the path that stays at least so long in each resource and arrives first, or `None`.
+    """The plan along the path that stays so many ticks longer than it must in each resource and arrives first.
 
-    The path leads from the robot's start over its stops to its goal; the last stay is what its last stop takes.
+    The path leads from the robot's start over its stops to its goal. `None`: there is no path, or it is not free.
     """
-    context = context_of(instance, committed)
-    release = instance.robot[robot].release
+    if not path:
+        return None
+    context, release = context_of(instance, committed), robot.release
+    stays = _stays(instance, robot, path, waits)
     entries = [
         Entry(path[0], window, release)
         for window in context.windows(path[0])
@@ -79,7 +77,7 @@ def timed_plan(
         return None
     last = min(entries, key=lambda entry: entry.enter)
     leave = None if instance.after_goal == "park" else last.enter + stays[-1]
-    return Plan(robot, (*last.before, Visit(last.resource, last.enter, leave)))
+    return Plan(robot.id, (*last.before, Visit(last.resource, last.enter, leave)))
 
 
 def _next_entries(
