@@ -221,11 +221,11 @@ def planned_grids() -> st.SearchStrategy[PlannedInstance]:
 
     def only_planned(planned: PlannedInstance) -> PlannedInstance:
         robots = tuple(robot for robot in planned.instance.robots if robot.id in planned.solution.order)
-        solution = Solution(
-            tuple(plan for robot in robots for plan in planned.solution.plans if plan.robot == robot.id),
-            tuple(robot.id for robot in robots),
+        instance, plans = (
+            replace(planned.instance, robots=robots),
+            {plan.robot: plan for plan in planned.solution.plans},
         )
-        return PlannedInstance(replace(planned.instance, robots=robots), solution)
+        return PlannedInstance(instance, Solution.of(instance, [plans[robot.id] for robot in robots]))
 
     return planned_instances(sizes, parking).map(only_planned)
 

@@ -21,6 +21,7 @@ from tests.oracle.running import (
     TWO,
     TWO_PLANNED,
     UNDER_WAY,
+    asked,
     corridor,
     line,
     solution,
@@ -44,13 +45,6 @@ def ask(*lines: bytes) -> list[dict[str, Any]]:
     return [json.loads(response) for response in responses.getvalue().splitlines()]
 
 
-def result(**fields: object) -> dict[str, Any]:
-    (response,) = ask(line(id=1, **fields))
-    assert response.keys() == {"id", "result"}, response
-    found: dict[str, Any] = response["result"]
-    return found
-
-
 def error(**fields: object) -> tuple[str, str, str | None, str]:
     (response,) = ask(line(id=1, **fields))
     assert response.keys() == {"id", "error"}, response
@@ -61,7 +55,8 @@ def error(**fields: object) -> tuple[str, str, str | None, str]:
 
 
 def test_start_tells_name_version_and_ops() -> None:
-    assert result(op="start", version=1) == {"name": "carproof", "version": version("carproof"), "ops": list(OPS)}
+    told = {"name": "carproof", "version": version("carproof"), "ops": list(OPS)}
+    assert ask(line(id=1, op="start", version=1)) == [{"id": 1, "result": told}]
 
 
 @pytest.mark.parametrize("id", [None, 0, "x", [1, {"a": [None]}], 1.5, 10**30])
@@ -114,8 +109,8 @@ def test_a_bad_request_is_refused_with_path_and_rule(
     op: object, changes: dict[str, object], kind: str, path: str, rule: str
 ) -> None:
     fields = {"op": op, **REQUESTS.get(str(op), {}), **changes}
-    asked = {name: value for name, value in fields.items() if value is not MISSING}
-    assert error(**asked)[:3] == (kind, path, rule)
+    given = {name: value for name, value in fields.items() if value is not MISSING}
+    assert error(**given)[:3] == (kind, path, rule)
 
 
 @pytest.mark.parametrize(
@@ -142,8 +137,7 @@ def test_no_line_ends_the_process(bad: bytes, rule: str) -> None:
 
 
 def test_a_line_at_the_limit_is_read() -> None:
-    first, last = ask(b'{"id": 1, "op": "stop"}'.ljust(LONGEST_LINE) + b"\n")[0:1] * 2
-    assert first == last == {"id": 1, "result": {}}
+    assert ask(b'{"id": 1, "op": "stop"}'.ljust(LONGEST_LINE) + b"\n") == [{"id": 1, "result": {}}]
 
 
 def test_the_end_of_the_input_and_stop_end_the_process() -> None:
@@ -244,7 +238,8 @@ def test_a_server_keeps_fleets_and_tells_what_changed() -> None:
     assert [plan["robot"] for plan in added["result"]["plans"]] == added["result"]["audit"]["certified"]
     assert gone["result"] == {"now": 4, "plans": [], "unplanned": [], "left": ["r1"]}
     assert [robot["id"] for robot in rest["result"]["instance"]["robots"]] == ["r2"]
-    assert result(op="check", instance=rest["result"]["instance"], solution=rest["result"]["solution"])["valid"]
+    is_sound = asked("check", instance=rest["result"]["instance"], solution=rest["result"]["solution"])
+    assert is_sound["result"]["valid"]
     assert closed["result"] == {"fleets": []}
     assert unknown["error"]["rule"] == "fleet/name"
 
