@@ -109,7 +109,7 @@ def gives_up_late(case: Case) -> Reply | None:
     """A search that ends 500 ticks after the release."""
     reply = right_reply(case, None)
     assert isinstance(reply, QueryDocument)
-    robot = case.instance.robot[case.robot or 0]
+    robot = case.instance.robot[case.asked_robot]
     return QueryDocument(None) if reply.plan is not None and reply.plan[-1][1] > robot.release + 500 else None
 
 
@@ -119,12 +119,9 @@ def waits(case: Case) -> Reply | None:
     assert isinstance(reply, QueryDocument)
     if len(case.solution.plans) <= 40 or case.now or reply.plan is None or len(reply.plan) < 2:
         return None
-    robot = case.instance.robot[case.robot or 0]
-    later = replace(
-        case.instance,
-        robots=tuple(replace(r, release=r.release + 1) if r.id == robot.id else r for r in case.instance.robots),
-    )
-    plan = engine_named(None).query(later, case.solution.plans, robot.id)
+    robot = case.instance.robot[case.asked_robot]
+    delayed = tuple(replace(r, release=r.release + 1) if r.id == robot.id else r for r in case.instance.robots)
+    plan = engine_named(None).query(replace(case.instance, robots=delayed), case.solution.plans, robot.id)
     if plan is None:
         return None
     first, *rest = plan.visits
@@ -133,15 +130,12 @@ def waits(case: Case) -> Reply | None:
 
 def arrives_only(case: Case) -> Reply | None:
     """The goal is kept free only at the arrival."""
-    assert case.robot is not None
-    robot = case.instance.robot[case.robot]
-    graph = case.instance.graph
+    graph, robot = case.instance.graph, case.instance.robot[case.asked_robot]
     short = tuple(replace(each, duration=1) if each.id == robot.goal else each for each in graph.resources)
     believed = replace(case.instance, graph=replace(graph, resources=short), after_goal="vanish")
-    others = [plan for plan in case.solution.plans if plan.robot != case.robot]
-    if len(others) < len(case.solution.plans) or case.now:
+    if len(case.others) < len(case.solution.plans) or case.now:
         return None
-    plan = engine_named(None).find(believed, others, case.robot)
+    plan = engine_named(None).find(believed, case.others, robot.id)
     if plan is None:
         return None
     *visits, last = plan.visits
@@ -175,8 +169,7 @@ def resources(case: Case) -> int:
 
 def others_lost(case: Case) -> Reply:
     """An added robot is planned as if there were no other."""
-    assert case.robot is not None
-    plan = engine_named(None).query(case.instance, (), case.robot, case.now)
+    plan = engine_named(None).query(case.instance, (), case.asked_robot, case.now)
     plans = case.solution.plans if plan is None else (*case.solution.plans, plan)
     return Solution.of(case.instance, plans)
 

@@ -2,6 +2,7 @@
 
 import json
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
@@ -11,10 +12,10 @@ from tests.oracle.test_conform_judges import right_reply
 
 from carp_spec import Solution
 from carproof.conform.answers import Reply
-from carproof.conform.asking.ladder import SIZES, large_case, rungs
+from carproof.conform.asking.ladder import LARGE_OPS, SIZES, Rung, large_case, rungs
 from carproof.conform.cases import Case
 from carproof.conform.findings import IN_TIME, Category, Fault, Finding
-from carproof.conform.judging.claims import FEATURES, Claims
+from carproof.conform.judging.claims import EVERYTHING, FEATURES, Claims
 from carproof.conform.judging.judges import first_finding
 from carproof.conform.levels import Level
 from carproof.conform.run import Options, conform
@@ -37,26 +38,21 @@ def test_a_bug_that_shows_only_beyond_a_size_or_a_number_is_found(bug: Bug) -> N
     assert run(bug, 0.0, examples=10).conforms is bool(report.large)
 
 
-def test_the_same_seed_asks_the_same_large_cases() -> None:
-    def asked(seed: int) -> list[Case]:
-        cases: list[Case] = []
-        ladder = list(rungs(("plan", "query", "add", "polish", "check"), Level.EXACT, seed, whole=False))[:60]
-        for rung in ladder:
-            case = large_case(rung, Claims(), classical=False)
-            cases += [] if case is None else [case]
-        return cases
+def cases_of(ladder: Iterable[Rung], claims: Claims = EVERYTHING) -> list[Case]:
+    made = (large_case(rung, claims, classical=False) for rung in ladder)
+    return [case for case in made if case is not None]
 
-    first = asked(3)
-    assert first == asked(3)
-    assert first != asked(4)
+
+def test_the_same_seed_asks_the_same_large_cases() -> None:
+    first, again, other = (cases_of([*rungs(LARGE_OPS, Level.EXACT, seed, whole=False)][:60]) for seed in (3, 3, 4))
+    assert first == again != other
     assert len(first) > 50
 
 
 @pytest.mark.parametrize("feature", FEATURES)
 def test_large_cases_have_no_feature_that_is_not_claimed(feature: str) -> None:
-    claims = Claims(frozenset({feature}))
-    ladder = [r for r in rungs(("plan", "query", "add"), Level.SOUND, 1, whole=False) if r.robots == SIZES[0]]
-    cases = [case for rung in ladder if (case := large_case(rung, claims, classical=False)) is not None]
+    ladder = (r for r in rungs(("plan", "query", "add"), Level.SOUND, 1, whole=False) if r.robots == SIZES[0])
+    cases = cases_of(ladder, Claims(frozenset({feature})))
     assert len(cases) > 100
     assert not [case.name for case in cases if FEATURES[feature](case)]
 
@@ -89,12 +85,9 @@ def test_who_gives_up_on_large_cases_has_shown_nothing_about_them() -> None:
 
 
 def test_right_answers_to_large_cases_pass_at_the_strictest_level() -> None:
-    level = Level.EXACT
-    ops = ("plan", "query", "add", "polish", "check")
-    ladder = [rung for rung in rungs(ops, level, 1, whole=False) if rung.robots == SIZES[2]]
-    cases = [case for rung in ladder[:45] if (case := large_case(rung, Claims(), classical=False)) is not None]
-    assert {case.op for case in cases} == {*ops}
-    assert [case.name for case in cases if first_finding(case, right_reply(case, None), level) is not None] == []
+    cases = cases_of([r for r in rungs(LARGE_OPS, Level.EXACT, 1, whole=False) if r.robots == SIZES[2]][:45])
+    assert {case.op for case in cases} == {*LARGE_OPS}
+    assert [case.name for case in cases if first_finding(case, right_reply(case, None), Level.EXACT) is not None] == []
 
 
 def test_a_failure_is_shrunk_until_nothing_can_be_taken_away() -> None:
