@@ -61,15 +61,11 @@ def drawing(instance: Instance, plans: Sequence[Plan]) -> str:
     if end <= last:
         lines.append(f"The ticks from {end} to {last} are left out.")
     lines += ["", " " * (width + 1) + "".join(str(tick % 10) for tick in range(end))]
-    for resource in instance.graph.resources:
-        row = []
-        for tick in range(end):
-            inside = [
-                symbols.get(plan.robot, UNKNOWN)
-                for plan in plans
-                for visit in plan.visits
-                if visit.resource == resource.id and visit.enter <= tick and (visit.leave is None or tick < visit.leave)
-            ]
-            row.append(inside[0] if len(inside) == 1 else MANY if inside else NOBODY)
-        lines.append(f"{resource.id!s:>{width}} {''.join(row)}")
+    inside: dict[tuple[ResourceId, int], str] = {}
+    for robot, visit in ((plan.robot, visit) for plan in plans for visit in plan.visits):
+        for tick in range(max(0, visit.enter), end if visit.leave is None else min(end, visit.leave)):
+            place = visit.resource, tick
+            inside[place] = MANY if place in inside else symbols.get(robot, UNKNOWN)
+    for id in instance.graph.index:
+        lines.append(f"{id!s:>{width}} " + "".join(inside.get((id, tick), NOBODY) for tick in range(end)))
     return "\n".join(lines) + "\n"
