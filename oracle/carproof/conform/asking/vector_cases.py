@@ -21,11 +21,9 @@ def vector_cases(ops: Sequence[str], level: Level, whole: bool, claims: Claims =
     A program need not support instances that forbid following, nor, unless it claims them, groups and stops.
     """
     for vector in vectors():
-        op = next((op for op in ASKED_OPS if op == vector.op), None)
-        if op is None or op not in ops or "refused" in vector.answer:
-            continue
-        if _is_known(vector.read_instance(), claims):
-            case = case_of(vector, op)
+        is_offered = vector.op in ops and vector.op in ASKED_OPS and "refused" not in vector.answer
+        if is_offered and _is_known(vector.read_instance(), claims):
+            case = case_of(vector)
             if _is_asked(case, level, whole):
                 yield replace(case, planner=None) if whole else case
 
@@ -43,11 +41,11 @@ def _is_asked(case: Case, level: Level, whole: bool) -> bool:
     return case.op != "optimum" or level >= Level.COMPLETE
 
 
-def case_of(vector: Vector, op: str) -> Case:
+def case_of(vector: Vector) -> Case:
     """The question of a vector; raises `Refusal` if it is none."""
     request = Request(write({"id": vector.id, **vector.request}))
     asked = OPS[request.op()].read(request)
     names = ("solution", "robot", "now", "planner", "delays")
     fields = {name: asked[name] for name in names if asked.get(name) is not None}
-    options = {"planner": asked["options"]} if op == "add" else {}
-    return Case("vectors", vector.id, op, asked["instance"], **fields, **options)
+    options = {"planner": asked["options"]} if vector.op == "add" else {}
+    return Case("vectors", vector.id, vector.op, asked["instance"], **fields, **options)

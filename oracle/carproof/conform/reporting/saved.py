@@ -79,8 +79,9 @@ def read_saved(folder: Path, whole: bool) -> Saved:
 def _read_case(folder: Path, name: str) -> Case:
     """A saved case; raises `OSError`, `ValueError` or `Refusal` if it cannot be read."""
     (vector,) = msgspec.json.decode(plain_file(folder / "vector.json", LARGEST), type=VectorsDocument).cases
-    (op,) = (each for each in (*ASKED_OPS, EXECUTION) if each == vector.op)
-    return replace(case_of(vector, op), stage="saved", name=name)
+    if vector.op not in (*ASKED_OPS, EXECUTION):
+        raise ValueError(vector.op)
+    return replace(case_of(vector), stage="saved", name=name)
 
 
 def save_all(failures: Sequence[Outcome], folder: Path, origin: Origin) -> list[Path]:
