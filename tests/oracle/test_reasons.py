@@ -3,10 +3,11 @@
 import pytest
 from tests.spec.making import instance, line, plan_of
 
-from carp_spec import Instance, Resource, ResourceGraph
+from carp_spec import Instance, Resource, ResourceGraph, Robot, Stop
 from carproof.judging.unplanned import why_unplanned
 
 LANE = line("abc")
+THERE_AND_BACK = (Stop("f"), Stop("b"))
 NO_WAY = "the committed plans leave no way to its goal"
 
 
@@ -17,6 +18,11 @@ NO_WAY = "the committed plans leave no way to its goal"
             instance(ResourceGraph((Resource("a"), Resource("b")), ()), ("a", "b")),
             (),
             "no moves lead from its start a to its goal b",
+        ),
+        (
+            Instance(ResourceGraph(line("abf").resources, (("a", "b"),)), (Robot("r0", "a", stops=THERE_AND_BACK),)),
+            (),
+            "no moves lead from its start a to its stop f",
         ),
         (instance(LANE, ("a", "c"), ("a", "a")), (("a", 0, 1),), "its start a is taken in [0,1), from its release on"),
         (instance(LANE, ("a", "b"), ("b", "b"), after_goal="park"), (("b", 0, None),), "its goal b is taken for ever"),

@@ -1,6 +1,7 @@
 """Why a robot is unplanned, for the person who asked."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 from carp_spec import Instance, Plan, ResourceGraph, ResourceId, RobotId
 from carp_spec.windows import Window, constraints_on, free_windows, stay_fits
@@ -9,8 +10,11 @@ from carp_spec.windows import Window, constraints_on, free_windows, stay_fits
 def why_unplanned(instance: Instance, committed: Sequence[Plan], robot: RobotId, now: int = 0) -> str:
     """One clause that says why CARP finds no plan for a robot that has none against the committed plans."""
     request = instance.robot[robot]
-    if not leads(instance.graph, request.start, request.goal):
-        return f"no moves lead from its start {request.start} to its goal {request.goal}"
+    places = (request.start, *(stop.resource for stop in request.stops))
+    names = ("its start", *("its stop",) * (len(places) - 2), "its goal")
+    for (here, name), (there, other) in pairwise(zip(places, names, strict=True)):
+        if not leads(instance.graph, here, there):
+            return f"no moves lead from {name} {here} to {other} {there}"
     duration = instance.duration(robot, request.start)
     ready = max(request.release + duration, now)
     if not any(
