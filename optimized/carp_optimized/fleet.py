@@ -15,23 +15,7 @@ from carp_optimized.neighbourhood.polishing import FORGOTTEN, NOW, QUEUED, TURN,
 from carp_optimized.neighbourhood.reuse import Queries, Reuse
 from carp_optimized.recording import enlarged, read_plan, write_plan
 from carp_optimized.state import encoding, limits, room
-from carp_optimized.state.arrays import (
-    ASKED,
-    BOUND,
-    KEPT,
-    LARGEST,
-    NONE,
-    PREFIX,
-    SHARED,
-    UNASKED,
-    UNCHANGED,
-    UNKNOWN,
-    Adding,
-    Options,
-    Polish,
-    Records,
-    State,
-)
+from carp_optimized.state.arrays import LARGEST, NONE, UNASKED, UNKNOWN, Adding, Options, Polish, Records, State
 from carp_optimized.state.records import keep_records
 from carp_spec import FixedPaths, Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Shuffled
 from carp_spec.documents.solutions import PlanColumns
@@ -85,15 +69,7 @@ class PlannedFleet:
     @property
     def queries(self) -> Queries:
         """The queries asked and avoided until now."""
-        counters = [int(count) for count in self.state.counters]
-        return Queries(
-            asked=counters[ASKED],
-            kept=counters[KEPT],
-            unchanged=counters[UNCHANGED],
-            prefixes=counters[PREFIX],
-            shared=counters[SHARED],
-            bounds=counters[BOUND],
-        )
+        return Queries(*self.state.counters.tolist())
 
     @property
     def plans(self) -> tuple[Plan, ...]:
@@ -158,12 +134,13 @@ class PlannedFleet:
             encoding.forget_stops(self.state, index)
         return tuple(map(self._ids.__getitem__, robots))
 
-    def withdraw(self, robots: Sequence[int]) -> None:
+    def withdraw(self, robots: Sequence[int] | Ints) -> None:
         """Take the plans of robots away, of those that have one."""
-        if robots:
-            gone = np.array(robots, np.int32)
-            held = self._records[gone]
-            self._withdraw(held[held != NONE])
+        gone = np.array(robots, np.int32)
+        held = self._records[gone]
+        held = held[held != NONE]
+        if held.size:
+            self.call(lambda: passes.withdraw_all(self.native, held))
             order = self._order[~np.isin(self._order, gone)]
             self._hold(order, self._records[order])
 
@@ -193,14 +170,10 @@ class PlannedFleet:
         self._ask_again()
         changed = np.array([self._index[plan.robot] for plan in plans], np.int32)
         records = np.array([self.record(plan) for plan in plans], np.int32)
-        self._withdraw(self._records[changed])
-        rest = self._order[~np.isin(self._order, changed)]
-        after = self._records.copy()
-        self._hold(rest, self._records[rest])
-        self.call(lambda: passes.reserve_all(self.native, records))
-        after[changed] = records
+        self.withdraw(changed)
+        self._reserve(changed, records)
         robots = np.array([self._index[id] for id in order], np.int32)
-        self._hold(robots, after[robots])
+        self._hold(robots, self._records[robots])
 
     def assign(
         self, robot: Robot, before: Robot, plan: Plan, now: int, options: Neighbourhood, number: int | None = None
@@ -211,9 +184,7 @@ class PlannedFleet:
         once it has vanished, so has its plan before, which left no later.
         """
         index, order = self._index[robot.id], self._order
-        rest = order[order != index]
-        self._withdraw(self._records[index : index + 1])
-        self._hold(rest, self._records[rest])
+        self.withdraw([index])
         self._write(robot, index)
         if self.add(index, now, options, number, plan):
             return True
@@ -240,8 +211,7 @@ class PlannedFleet:
         """Take over plans made elsewhere, which must fit the plans of the fleet."""
         records = np.array([self.record(plan) for plan in plans], np.int32)
         robots = np.array([self._index[plan.robot] for plan in plans], np.int32)
-        self.call(lambda: passes.reserve_all(self.native, records))
-        self._hold(np.concatenate([self._order, robots]), np.concatenate([self._records[self._order], records]))
+        self._reserve(robots, records)
 
     def find(self, robot: int, before: Plan | None, now: int) -> Plan | None:
         """The plan of a robot that is not in the fleet, which has followed the plan `before` until now."""
@@ -255,20 +225,18 @@ class PlannedFleet:
 
         If so, it comes last in the planning order; if not, all is as before. It keeps what it has done until now.
         """
-        order = self._order
-        held, rest = self._records[robot : robot + 1].copy(), order[order != robot]
-        self._withdraw(held[held != NONE])
-        self._hold(rest, self._records[rest])
+        own, order = np.array([robot], np.int32), self._order
+        held = self._records[own]
+        self.withdraw(own)
         followed = int(held[0]) if now > 0 else NONE
         found = np.full(1, self.call(lambda: passes.find_one(self.native, robot, followed, now)), np.int32)
-        is_better = found[0] != NONE and (held[0] == NONE or self._cost(found) < self._cost(held))
+        is_better = bool(found[0] != NONE and (held[0] == NONE or self._cost(found) < self._cost(held)))
         if is_better:
-            held, order = found, np.append(rest, np.int32(robot))
-        self.call(lambda: passes.reserve_all(self.native, held[held != NONE]))
-        after = self._records.copy()
-        after[robot] = held[0]
-        self._hold(order, after[order])
-        return bool(is_better)
+            self._reserve(own, found)
+        elif held[0] != NONE:
+            self._reserve(own, held)
+            self._hold(order, self._records[order])
+        return is_better
 
     def put_in_order(self, goes_on: Callable[[], bool]) -> None:
         """Put plans of tick 0 into an order in which none is late beside those before it, as far as there is one.
@@ -283,10 +251,12 @@ class PlannedFleet:
         while len(waiting) != last and goes_on():
             last = len(waiting)
             for robot in tuple(waiting):
-                if goes_on() and self._is_best(robot, records[robot : robot + 1]):
+                own = np.array([robot], np.int32)
+                if goes_on() and self._is_best(robot, records[own]):
                     waiting.remove(robot)
-                    self._reserve_next([robot], records)
-        self._reserve_next(waiting, records)
+                    self._reserve(own, records[own])
+        rest = np.array(waiting, np.int32)
+        self._reserve(rest, records[rest])
 
     def _is_best(self, robot: int, record: Ints) -> bool:
         """Whether the robot, which has no plan now, could not arrive earlier than by that one."""
@@ -295,13 +265,6 @@ class PlannedFleet:
         is_best = found[0] != NONE and self._cost(found) == self._cost(record)
         self.state.records.used[:] = used
         return bool(is_best)
-
-    def _reserve_next(self, robots: Sequence[int], records: Ints) -> None:
-        """Hold further plans behind those held."""
-        new = np.array(robots, np.int32)
-        self.call(lambda: passes.reserve_all(self.native, records[new]))
-        order = np.append(self._order, new)
-        self._hold(order, records[order])
 
     def find_beside(self, robot: int, records: Sequence[int]) -> Plan | None:
         """The plan of a robot as `find` makes it without history, beside further plans, which `record` has taken up."""
@@ -348,8 +311,7 @@ class PlannedFleet:
             else:
                 self.state.records.used[:] = used
             advance()
-        self.call(lambda: passes.reserve_all(self.native, best[1]))
-        self._hold(*best)
+        self._reserve(*best)
 
     def greedy(self, advance: Callable[[], None]) -> None:
         """Plan all robots, as if there were no plans yet, each time the one whose plan is cheapest."""
@@ -392,9 +354,7 @@ class PlannedFleet:
         if not found:
             return False
         best = np.array([min(found, key=lambda record: int(self.state.records.arrival[record]))], np.int32)
-        self.call(lambda: passes.reserve_all(self.native, best))
-        robots = np.append(self._order, np.int32(robot))
-        self._hold(robots, np.append(self._records[self._order], best))
+        self._reserve(np.array([robot], np.int32), best)
         return True
 
     def add(
@@ -489,9 +449,7 @@ class PlannedFleet:
 
     def clear(self) -> None:
         """Forget all plans."""
-        held = self._records[self._order]
-        self._withdraw(held)
-        self._hold(self._order[:0], held[:0])
+        self.withdraw(self._order)
 
     def _take(self, state: State) -> None:
         """Work on other arrays."""
@@ -513,9 +471,6 @@ class PlannedFleet:
         self._records = np.concatenate([self._records, nothing])
         self._noted = np.concatenate([self._noted, nothing])
 
-    def _withdraw(self, records: Ints) -> None:
-        self.call(lambda: passes.withdraw_all(self.native, records))
-
     def _fall_back(self, robot: int, followed: int, now: int, planner: Shuffled) -> bool:
         order, held = self._order, self._records[self._order]
         self._records[robot] = followed
@@ -523,8 +478,7 @@ class PlannedFleet:
         if self._order.size == order.size + 1:
             return True
         self.clear()
-        self.call(lambda: passes.reserve_all(self.native, held))
-        self._hold(order, held)
+        self._reserve(order, held)
         return False
 
     def _pass(self, robots: Ints, followed: Ints, now: int, goes_on: Callable[[], bool] = lambda: True) -> Ints:
@@ -545,6 +499,11 @@ class PlannedFleet:
             held = plans[: first + PART]
             self._hold(robots[: first + PART][held != NONE], held[held != NONE])
         return plans
+
+    def _reserve(self, robots: Ints, records: Ints) -> None:
+        """Hold further plans behind those held."""
+        self.call(lambda: passes.reserve_all(self.native, records))
+        self._hold(np.append(self._order, robots), np.append(self._records[self._order], records))
 
     def _hold(self, robots: Ints, records: Ints) -> None:
         """Note the plans that the windows hold."""

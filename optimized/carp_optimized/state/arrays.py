@@ -22,9 +22,7 @@ UNREACHABLE = -1  # a guide: the goal cannot be reached from the resource
 TOO_FAR = -2  # a guide: it can, in more than LARGEST ticks
 FURTHER = -3  # a guide: the resource is further from the goal than any that the guide has reached
 
-ASKED, KEPT, UNCHANGED, PREFIX, SHARED, BOUND = range(
-    6
-)  # the counters of queries, see `carp_optimized.neighbourhood.reuse`
+ASKED, KEPT, UNCHANGED, PREFIX, SHARED, BOUND = range(6)  # the counters, in the order of `Queries`
 COUNTERS = 6
 
 PLANS = 62  # plans that a set of plans in 64 bits can hold; the bit PLANS stands for all others
