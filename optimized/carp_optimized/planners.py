@@ -128,7 +128,7 @@ def plan_with_fleet(
             for robot in everyone:
                 fleet.add(robot, 0, planner)
                 advance()
-    return _solution(instance, fleet.plans, set(fleet.instance.robot)), fleet
+    return known(instance, Solution.of(instance, fleet.plans)), fleet
 
 
 def steps(instance: Instance, planner: Planner) -> int:
@@ -153,7 +153,9 @@ def add(
     fleet = _fleet(instance, reuse)
     fleet.commit([by_robot[each] for each in solution.order])
     fleet.add(fleet.index(robot), now, options)
-    return _solution(instance, fleet.plans, {*by_robot, *solution.unplanned, robot})
+    order = tuple(each.robot for each in fleet.plans)
+    missing = {*solution.unplanned, robot}.difference(order)
+    return known(instance, Solution(fleet.plans, order, tuple(each for each in instance.robot if each in missing)))
 
 
 def assign(
@@ -222,7 +224,7 @@ def polish_while(
     fleet = _fleet(instance)
     fleet.commit([by_robot[each] for each in whole.order])
     polish_fleet(fleet, goes_on, last, seed, now, advance)
-    return _solution(instance, fleet.plans, set(fleet.instance.robot))
+    return known(instance, Solution.of(instance, fleet.plans))
 
 
 def polish_fleet(
@@ -249,11 +251,3 @@ def polish_fleet(
 def rounds_between_looks(fleet: "PlannedFleet") -> int:
     """How many rounds of a polish are played between two looks at a clock: fewer where each takes long."""
     return max(ROUNDS * VISITS // max(fleet.visits, VISITS), 1)
-
-
-def _solution(instance: Instance, plans: tuple[Plan, ...], named: set[RobotId]) -> Solution:
-    """The solution of the robots named: those without a plan are unplanned."""
-    order = tuple(each.robot for each in plans)
-    planned = set(order)
-    unplanned = (robot.id for robot in instance.robots if robot.id in named and robot.id not in planned)
-    return known(instance, Solution(plans, order, tuple(unplanned)))

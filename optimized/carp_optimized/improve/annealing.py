@@ -16,9 +16,10 @@ from time import perf_counter
 
 import carp_optimized
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.improve.cycles import ENOUGH, HEAT, PARTS, REHEAT, chance
 from carp_optimized.improve.planning import improve_crowd
 from carp_optimized.improve.repair import repair
-from carp_optimized.neighbourhood.polishing import CHANCE, SURE
+from carp_optimized.neighbourhood.polishing import CHANCE
 from carp_optimized.planners import rounds_between_looks
 from carp_optimized.settling import settle
 from carp_spec import Instance, Refusal, Solution
@@ -28,16 +29,8 @@ from carp_spec.requests import require_tick, sound_solution
 CYCLES, CYCLES_OF_LUCK = 8, 16
 LUCK = 2
 """Luck decides where the delays, times this, are more than the shortest paths."""
-HEAT = 64
-"""The mean raise of the first rounds, in 16ths of the mean delay of a robot."""
-REHEAT = 16
-"""The same of cycles from the best plans seen, which are not to leave their place altogether."""
 COOLER = 4
 """If luck decides, delays are large, and raises are smaller shares of them by this."""
-ENOUGH = 32
-"""With fewer rounds a robot than this the raises are smaller by as much: there is no time to make up for them."""
-PARTS = 1 << 10
-"""The time left is counted in parts of this."""
 ENDING, LEAST_ENDING, MOST_ENDING = 4, 32, 8
 """At the end, plans are settled, which takes up to about as long as so many rounds for each robot.
 
@@ -126,7 +119,7 @@ def anneal(
             current, before, own = cycle, best, fleet.worth
         expected = PARTS * played // max(spent, 1)
         heated = (HEAT if from_given else REHEAT) * max(own[1] - least, 0) // (COOLER if luck else 1)
-        polishing.fields.counts[CHANCE] = _chance(heated, len(instance.robots), expected, PARTS - gone)
+        polishing.fields.counts[CHANCE] = chance(heated, len(instance.robots), expected, PARTS - gone, power=1)
         batch = fleet.polish(polishing, rounds)
         played += batch
         settling = ENDING * len(instance.robots) * (clock() - started) / max(played, 1)
@@ -143,13 +136,3 @@ def anneal(
     if settle(fleet, lambda: clock() - started < seconds, now):
         advance(played, *fleet.worth)
     return Solution.of(instance, fleet.plans)
-
-
-def _chance(heated: int, robots: int, rounds: int, left: int) -> int:
-    """The chance of each further tick of a raise, in parts of `SURE`; it makes the mean raise what it is to be.
-
-    `heated` is the delay of all robots times the heat, and `rounds` are those expected.
-    """
-    enough = max(ENOUGH * robots, 1)
-    mean = heated * min(rounds, enough) * left**3
-    return SURE * mean // (mean + 16 * max(robots, 1) * enough * PARTS**3)

@@ -29,9 +29,12 @@ CYCLES, LEAVING, CHOOSING = 8, 1, 7
 FEW, SPARSE = 8, 8
 """The worse start is tried if at least so many rounds a robot are expected, and each robot has so many places."""
 HEAT, REHEAT = 64, 16
-"""The mean raise of the first rounds of the first cycle and of others, in 16ths of the mean delay of a robot."""
+"""The mean raise of the first rounds of the first cycle and of others, in 16ths of the mean delay of a robot.
+
+Cycles from the best paths are not to leave their place altogether.
+"""
 ENOUGH = 32
-"""With fewer rounds a robot than this, raises are smaller by the square: there is no time to make up for them."""
+"""With fewer rounds a robot than this, raises are smaller: there is no time to make up for them."""
 PARTS = 1 << 10
 """What is left of the time is counted in parts of this."""
 
@@ -67,7 +70,8 @@ def improved(
                 break
         improving = searches[-1]
         heat = (REHEAT if cycle else HEAT) * (improving.total - least)
-        improving.play(rounds, WORK, _chance(heat, robots, expected, PARTS - part), turning=expected >= ENOUGH * robots)
+        raising = chance(heat, robots, expected, PARTS - part, power=2)
+        improving.play(rounds, WORK, raising, turning=expected >= ENOUGH * robots)
         best = min(each.best for each in searches)
         advance(_played(searches), 0, best)
         if best == least:
@@ -103,11 +107,14 @@ def _parts(iterations: int | None, timer: Clock, searches: Sequence[Improving]) 
             break
 
 
-def _chance(heated: int, robots: int, rounds: int, left: int) -> int:
+def chance(heated: int, robots: int, rounds: int, left: int, power: int) -> int:
     """The chance of each further tick of a raise, in parts of `SURE`; it makes the mean raise what it is to be.
 
-    `heated` is the delay of all robots times the heat, and `rounds` are those expected.
+    `heated` is the delay of all robots times the heat, and `rounds` are those expected: if too few, raises are smaller
+    by that power.
     """
+    robots = max(robots, 1)
     enough = ENOUGH * robots
-    mean = heated * min(rounds, enough) ** 2 * left**3
-    return SURE * mean // (mean + 16 * robots * enough**2 * PARTS**3)
+    mean: int = heated * min(rounds, enough) ** power * left**3
+    whole: int = mean + 16 * robots * enough**power * PARTS**3
+    return SURE * mean // whole
