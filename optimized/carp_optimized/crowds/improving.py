@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from carp_optimized.crowds.crowd import GONE, Crowd, ways_of
+from carp_optimized.crowds.crowd import Crowd, ways_of
 from carp_optimized.crowds.making_way import make_way
 from carp_optimized.crowds.rounds import (
     BEST,
@@ -27,7 +27,7 @@ from carp_optimized.crowds.rounds import (
 from carp_optimized.crowds.sipp import EFFORT, GREED, WHOLE, no_query
 from carp_optimized.crowds.soft_sipp import no_soft_query
 from carp_optimized.crowds.stays import Paths, no_paths, no_stays, with_more_room
-from carp_optimized.jit.kinds import Ints, IntTable
+from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
 
 WORK = 1 << 15
@@ -197,17 +197,3 @@ def arrivals(paths: Paths) -> Ints:
 def total_of(paths: Paths) -> int:
     """The sum of arrivals."""
     return int(arrivals(paths).sum())
-
-
-def paths_of(ways: IntTable) -> Paths:
-    """The paths of robots that are in these places, tick by tick."""
-    enters = []
-    for way in ways.T:
-        present = int((way != GONE).sum())
-        enters.append(np.concatenate([[0], 1 + np.flatnonzero(np.diff(way[:present]))]))
-    paths = no_paths(len(enters), max(map(len, enters), default=0) + LONGER)
-    for robot, ticks in enumerate(enters):
-        paths.size[robot] = ticks.size
-        paths.enter[robot, : ticks.size] = ticks
-        paths.place[robot, : ticks.size] = ways[ticks, robot]
-    return paths

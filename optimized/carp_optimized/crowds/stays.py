@@ -4,6 +4,7 @@ No stay is for ever in a crowd that vanishes, and the last one of each path is i
 certain number of stays. A full one makes a round end; the caller makes more room and asks again.
 """
 
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +13,8 @@ from carp_optimized.crowds.crowd import Crowd
 from carp_optimized.jit.compiling import compiled
 from carp_optimized.jit.kinds import Ints, IntTable
 from carp_optimized.state.arrays import NEVER, NONE
+from carp_spec import Instance, Plan, Robot, Solution, Visit
+from carp_spec.documents.decoding import without_collection
 
 SPARE = 6
 """The stays for which each row has room, beside half as many again as it holds."""
@@ -40,6 +43,23 @@ class Paths(NamedTuple):
 def no_paths(rows: int, room: int) -> Paths:
     """Rows without visits, with room for that many."""
     return Paths(np.zeros(rows, np.int32), np.empty((rows, room), np.int32), np.empty((rows, room), np.int32))
+
+
+def solution_along(instance: Instance, robots: Iterable[Robot], paths: Paths) -> Solution:
+    """The plans of robots along their paths; a row without visits is no path."""
+    names = [each.id for each in instance.graph.resources]
+    parks = instance.after_goal == "park"
+
+    def plans() -> Iterator[Plan]:
+        for row, (robot, size) in enumerate(zip(robots, paths.size.tolist(), strict=True)):
+            if size > 0:
+                enters: list[int] = paths.enter[row, :size].tolist()
+                leaves = [*enters[1:], None if parks else enters[-1] + 1]
+                places = map(names.__getitem__, paths.place[row, :size].tolist())
+                yield Plan(robot.id, tuple(map(Visit, places, enters, leaves)))
+
+    with without_collection():
+        return Solution.of(instance, plans())
 
 
 def no_stays(visits: Ints) -> Stays:

@@ -15,7 +15,7 @@ from math import inf
 import numpy as np
 
 from carp_optimized.crowds.crowd import PART, Crowd, measure, near, ways_of
-from carp_optimized.crowds.improving import Improving, arrivals, paths_of, total_of
+from carp_optimized.crowds.improving import Improving, arrivals, total_of
 from carp_optimized.crowds.rounds import GREEDY
 from carp_optimized.crowds.sipp import UNTIL_FOUND
 from carp_optimized.crowds.stays import Paths, no_paths
@@ -152,7 +152,7 @@ def _searched(search: Search, steps: int, goes_on: Callable[[], bool]) -> list[P
     last = min(search.tried + steps, NO_LIMIT)
     while search.outcome == RUNNING and search.tried < last and goes_on():
         search.go(8)
-    return [] if search.ways is None else [paths_of(search.ways)]
+    return [] if search.paths is None else [search.paths]
 
 
 def planned_in_order(crowd: Crowd, timer: Clock, seed: int, until: int, greed: int, effort: int, keys: Ints) -> Paths:

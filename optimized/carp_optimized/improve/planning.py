@@ -4,7 +4,7 @@ First come paths by LaCAM and by prioritized planning (`carp_optimized.improve.f
 best ones (`carp_optimized.improve.cycles`). What takes time at the end is timed on a part before.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
 from time import perf_counter
@@ -14,13 +14,12 @@ import numpy as np
 from carp_optimized.crowds.checking import require_lawful
 from carp_optimized.crowds.crowd import FAR, PART, Crowd, are_apart, crowd_of, is_stepwise, measure, only, ways_of
 from carp_optimized.crowds.improving import LONGER, arrivals, total_of
-from carp_optimized.crowds.stays import Paths, no_paths
+from carp_optimized.crowds.stays import Paths, no_paths, solution_along
 from carp_optimized.improve.clock import Clock
 from carp_optimized.improve.cycles import Advance, improved
 from carp_optimized.improve.first_paths import first_paths, nearest_paths
 from carp_optimized.jit.references import Native
-from carp_spec import Instance, Plan, Robot, Solution, Visit
-from carp_spec.documents.decoding import without_collection
+from carp_spec import Instance, Solution
 
 MEASURING = 0.7
 """The part of the time in which the distances of all robots must be measured; else only the nearest are planned."""
@@ -36,23 +35,6 @@ class Found:
 
     solution: Solution
     shortest: int | None
-
-
-def solution_along(instance: Instance, robots: Iterable[Robot], paths: Paths) -> Solution:
-    """The plans of robots along their paths; a row without visits is no path."""
-    names = [each.id for each in instance.graph.resources]
-    parks = instance.after_goal == "park"
-
-    def plans() -> Iterator[Plan]:
-        for row, (robot, size) in enumerate(zip(robots, paths.size.tolist(), strict=True)):
-            if size > 0:
-                enters: list[int] = paths.enter[row, :size].tolist()
-                leaves = [*enters[1:], None if parks else enters[-1] + 1]
-                places = map(names.__getitem__, paths.place[row, :size].tolist())
-                yield Plan(robot.id, tuple(map(Visit, places, enters, leaves)))
-
-    with without_collection():
-        return Solution.of(instance, plans())
 
 
 def plan_crowd(

@@ -6,12 +6,13 @@ longer demands on its successor, which fix the place of one more robot at a time
 `carp_optimized.crowds.rounds` lowers them. Nothing here is trusted: the law judges the plans.
 """
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
 from carp_optimized.crowds.crowd import FAR, GONE, Crowd, can_begin, crowd_of, is_stepwise, measure, ways_of
+from carp_optimized.crowds.improving import LONGER
+from carp_optimized.crowds.stays import Paths, no_paths, solution_along
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints, IntTable, Longs, Numbers
 from carp_optimized.jit.references import Native, dereference
@@ -19,7 +20,7 @@ from carp_optimized.lacam.guides import Guides
 from carp_optimized.lacam.pibt import NOWHERE, Step, begin, choose, end, is_open, no_step, rank_choices, take
 from carp_optimized.neighbourhood.orders import FIRST_MIX, GOLDEN, SECOND_MIX
 from carp_optimized.state.arrays import NONE
-from carp_spec import Instance, Plan, ResourceId, Visit
+from carp_spec import Instance, Plan
 
 STEPS = 10_000
 """The search ends after this number of successors; most searches that succeed need a few hundred."""
@@ -75,18 +76,18 @@ def plans_by_steps(instance: Instance, steps: int = STEPS) -> tuple[Plan, ...] |
         return None
     search = Search(crowd)
     search.go(steps)
-    return None if search.ways is None else plans_of(instance, search.ways)
+    return None if search.paths is None else solution_along(instance, instance.robots, search.paths).plans
 
 
 class Search:
     """A search that goes on as long as it is asked to."""
 
-    __slots__ = ("_native", "outcome", "ways")
+    __slots__ = ("_native", "outcome", "paths")
 
     def __init__(self, crowd: Crowd, seed: int = 0, guides: Guides | None = None) -> None:
         """The crowd has been measured, and `can_begin`."""
         self.outcome = RUNNING
-        self.ways: IntTable | None = None
+        self.paths: Paths | None = None
         self._native = Native(Lacam(crowd, no_step(crowd, seed, guides), _no_nodes(crowd, ROOM)))
         _place_root(self._native.fields)
 
@@ -96,7 +97,7 @@ class Search:
         return int(self._native.fields.nodes.counts[TRIED])
 
     def go(self, steps: int) -> None:
-        """Try that many successors, or until `outcome` is not `RUNNING`; `ways` are then the places tick by tick."""
+        """Try that many successors, or until `outcome` is not `RUNNING`; if it is `FOUND`, there are `paths`."""
         nodes = self._native.fields.nodes
         last = int(nodes.counts[TRIED]) + steps
         while self.outcome == RUNNING and nodes.counts[TRIED] < last:
@@ -107,7 +108,7 @@ class Search:
                 self._native = Native(Lacam(crowd, step, nodes))
                 self.outcome = RUNNING
         if self.outcome == FOUND:
-            self.ways = _ways(nodes)
+            self.paths = _paths(nodes)
 
 
 def _no_nodes(crowd: Crowd, room: int) -> Nodes:
@@ -157,30 +158,24 @@ def _place_root(lacam: Lacam) -> None:
     add_root(Native(lacam))
 
 
-def _ways(nodes: Nodes) -> IntTable:
-    """The places of all robots, tick by tick."""
+def _paths(nodes: Nodes) -> Paths:
+    """The paths of all robots."""
     node = int(nodes.stack[nodes.counts[DEPTH] - 1])
-    way = []
+    steps = []
     while node != NONE:
-        way.append(node)
+        steps.append(node)
         node = int(nodes.parent[node])
-    return nodes.places[way[::-1]]
-
-
-def plans_of(instance: Instance, ways: IntTable) -> tuple[Plan, ...]:
-    """The plans of robots that are in these places, tick by tick."""
-    names = [each.id for each in instance.graph.resources]
-    parks = instance.after_goal == "park"
-    return tuple(Plan(robot.id, tuple(_visits(names, ways[:, k], parks))) for k, robot in enumerate(instance.robots))
-
-
-def _visits(names: list[ResourceId], way: Ints, parks: bool) -> Iterator[Visit]:
-    present = int((way != GONE).sum())
-    enters = [0, *(1 + np.flatnonzero(np.diff(way[:present]))).tolist()]
-    for k, enter in enumerate(enters):
-        is_last = k == len(enters) - 1
-        leave = (None if parks else present) if is_last else enters[k + 1]
-        yield Visit(names[way[enter]], enter, leave)
+    places = nodes.places[steps[::-1]]
+    enters = []
+    for way in places.T:
+        present = int((way != GONE).sum())
+        enters.append(np.concatenate([[0], 1 + np.flatnonzero(np.diff(way[:present]))]))
+    paths = no_paths(len(enters), max(map(len, enters), default=0) + LONGER)
+    for robot, ticks in enumerate(enters):
+        paths.size[robot] = ticks.size
+        paths.enter[robot, : ticks.size] = ticks
+        paths.place[robot, : ticks.size] = places[ticks, robot]
+    return paths
 
 
 @entry

@@ -7,8 +7,7 @@ from tests.optimized.crowds.measuring import measured, on_grid
 from carp_optimized.crowds.improving import Improving, arrivals
 from carp_optimized.crowds.rounds import DEGREES, GREEDY
 from carp_optimized.crowds.sipp import UNTIL_FOUND
-from carp_optimized.crowds.stays import no_paths
-from carp_optimized.improve.planning import solution_along
+from carp_optimized.crowds.stays import no_paths, solution_along
 from carp_reference import query
 from carp_spec import AfterGoal, Instance, judge
 

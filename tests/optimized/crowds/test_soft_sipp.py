@@ -9,8 +9,7 @@ from tests.optimized.crowds.measuring import measured, on_grid
 from carp_optimized.crowds.improving import Improving
 from carp_optimized.crowds.rounds import GREEDY
 from carp_optimized.crowds.sipp import UNTIL_FOUND
-from carp_optimized.crowds.stays import no_paths
-from carp_optimized.improve.planning import solution_along
+from carp_optimized.crowds.stays import no_paths, solution_along
 from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, Solution, judge
 
 ROBOTS = 60

@@ -9,7 +9,7 @@ from hypothesis import given
 from tests.optimized.crowds.measuring import measured, on_grid
 
 from carp_optimized.crowds.crowd import is_stepwise, ways_of
-from carp_optimized.crowds.improving import arrivals, paths_of
+from carp_optimized.crowds.improving import arrivals
 from carp_optimized.crowds.rounds import GREEDY
 from carp_optimized.improve import first_paths, planning
 from carp_optimized.improve.clock import ALL, Clock
@@ -72,9 +72,8 @@ def test_rounds_from_two_starts_end_no_worse_than_either_in_whatever_order_they_
     always = Clock(None, process_time, 0.0)
     search = Search(found)
     search.go(10**6)
-    assert search.ways is not None
-    steps = paths_of(search.ways)
-    starts = [steps, first_paths.planned_in_order(found, always, 0, ALL, GREEDY, 30, ways_of(found))]
+    assert search.paths is not None
+    starts = [search.paths, first_paths.planned_in_order(found, always, 0, ALL, GREEDY, 30, ways_of(found))]
     for ordered in (starts, starts[::-1]):
         ended = improved(found, ordered, iterations, always, 0, lambda *_: None)
         assert arrivals(ended).sum() <= min(arrivals(each).sum() for each in starts)
