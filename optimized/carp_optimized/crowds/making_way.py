@@ -5,13 +5,14 @@ place in the order that it would have needed, and all others keep their plans. T
 other out for ever.
 """
 
-from carp_optimized.crowds.rounds import MISSED, Rounds, choice, rounds_at
+from carp_optimized.crowds.rounds import MISSED, Rounds, rounds_at
 from carp_optimized.crowds.sipp import EXPANDED, find_path
 from carp_optimized.crowds.soft_sipp import SoftQuery, find_soft_path, soft_query_at
 from carp_optimized.crowds.stays import drop, later_than, leave_of, put, robot_at
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
+from carp_optimized.neighbourhood.orders import choice
 from carp_optimized.state.arrays import NEVER, NONE
 
 

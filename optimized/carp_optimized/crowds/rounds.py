@@ -11,15 +11,13 @@ follows what its rounds gained for the work that they took (adaptive large neigh
 
 from typing import NamedTuple
 
-import numpy as np
-
 from carp_optimized.crowds.crowd import Crowd
 from carp_optimized.crowds.sipp import EXPANDED, GREED, TURN, WHOLE, Query, find_path
 from carp_optimized.crowds.stays import Paths, Stays, arrival, copy_path, drop, later_than, put, robot_at
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints, Longs, Numbers
 from carp_optimized.jit.references import Native, dereference
-from carp_optimized.neighbourhood.orders import next_number
+from carp_optimized.neighbourhood.orders import NOISE, choice, put_in_turn, shuffle
 from carp_optimized.state.arrays import NEVER, NONE
 
 TOTAL, BEST, CHANCE, DIRTY, MARK, SIZE, WORK, ROUNDS, MISSED, TURNING = range(10)  # the counts
@@ -28,7 +26,6 @@ IN_WAY, CROSSING, TURNS, DRAWN = range(4)  # the kinds
 KINDS = 4
 GREEDY = WHOLE // 2
 DEGREES = 3  # of greed: none, `GREEDY`, and four times that
-OWN_WAY, OTHER_WAYS, HALF = range(3)  # the robots that go first, of four choices; else none does
 MOST_MEMBERS = 16
 LEAST_WEIGHT, LEAST_OF_DEGREES = 1 << 8, 1 << 4
 SHIFT = 16
@@ -37,8 +34,6 @@ FIRST_WEIGHTS = KINDS * (1 << 16,) + (1 << 10, 1 << 12, 1 << 12)
 GAIN = 1 << 20  # a gain of one tick for one unit of work adds this to a weight
 MEMORY = 64  # rounds over which a weight is about the mean
 WALKS = 10
-NOISE = 16  # ticks by which robots may change places
-AFTER = 1 << 40  # more than any tick
 FULL = NONE
 
 
@@ -66,12 +61,6 @@ class Rounds(NamedTuple):
 
 
 rounds_at = dereference(Rounds)
-
-
-@compiled
-def choice(stream: Numbers, among: int) -> int:
-    """A choice among that many."""
-    return int(np.int64(next_number(stream) % np.uint64(among)))
 
 
 @entry
@@ -148,15 +137,15 @@ def play_round(state: Rounds) -> bool:
     begun = int(state.query.counts[EXPANDED])
     if kind == IN_WAY:
         draw_in_way(state, size)
-        draw_order(state)
     elif kind == CROSSING:
         draw_crossing(state, size)
-        draw_order(state)
     elif kind == TURNS:
         draw_crossing(state, 4 + choice(state.stream, MOST_MEMBERS - 3))
         draw_turns(state)
     else:
         add_drawn(state, size)
+    if kind in (IN_WAY, CROSSING):  # half of the time the first stays first
+        shuffle(state.stream, state.members, choice(state.stream, 2), int(state.counts[SIZE]))
     if not replan(state):
         return False
     work = 100 * int(state.counts[SIZE]) + int(state.query.counts[EXPANDED]) - begun
@@ -331,69 +320,39 @@ def add_drawn(state: Rounds, size: int) -> None:
 
 
 @compiled
-def draw_order(state: Rounds) -> None:
-    """Draw the order of the members, half of the time of all but the first."""
-    first = choice(state.stream, 2)
-    for k in range(int(state.counts[SIZE]) - 1, first, -1):
-        swap_members(state, k, first + choice(state.stream, k - first + 1))
-
-
-@compiled
-def swap_members(state: Rounds, one: int, other: int) -> None:
-    """Swap two members."""
-    robot = int(state.members[one])
-    state.members[one] = state.members[other]
-    state.members[other] = robot
-
-
-@compiled
 def draw_turns(state: Rounds) -> None:
     """Order the members by their arrivals in the place where they cross, or those of one direction first."""
     place = int(state.key[0])
     tick = int(state.key[1])
-    own = way_after(state, int(state.members[0]), place, tick)
+    pivot = int(state.members[0])
+    own = way_after(state.paths, pivot, visit_near(state.paths, pivot, place, tick))
     leaders = choice(state.stream, 4)
     noise = 1 + choice(state.stream, 2) * (NOISE - 1)
     for k in range(int(state.counts[SIZE])):
         robot = int(state.members[k])
-        visit = visit_near(state, robot, place, tick)
-        key = (int(state.paths.enter[robot][visit]) if visit != NONE else tick) + choice(state.stream, noise)
-        is_own = way_after(state, robot, place, tick) == own
-        if (
-            (leaders == OWN_WAY and not is_own)
-            or (leaders == OTHER_WAYS and is_own)
-            or (leaders == HALF and choice(state.stream, 2) == 0)
-        ):
-            key += AFTER
-        at = k
-        while at > 0 and state.key[at - 1] > key:
-            state.key[at] = state.key[at - 1]
-            state.members[at] = state.members[at - 1]
-            at -= 1
-        state.key[at] = key
-        state.members[at] = robot
+        visit = visit_near(state.paths, robot, place, tick)
+        enter = int(state.paths.enter[robot][visit]) if visit != NONE else tick
+        is_own = way_after(state.paths, robot, visit) == own
+        put_in_turn(state.stream, state.members, state.key, k, enter, is_own, leaders, noise)
 
 
 @compiled
-def visit_near(state: Rounds, robot: int, place: int, tick: int) -> int:
+def visit_near(paths: Paths, robot: int, place: int, tick: int) -> int:
     """The robot's visit of the place that begins the fewest ticks apart from the tick, or `NONE`."""
     found = NONE
-    least = AFTER
-    for visit in range(int(state.paths.size[robot])):
-        apart = abs(int(state.paths.enter[robot][visit]) - tick)
-        if state.paths.place[robot][visit] == place and apart < least:
+    least = NEVER
+    for visit in range(int(paths.size[robot])):
+        apart = abs(int(paths.enter[robot][visit]) - tick)
+        if paths.place[robot][visit] == place and apart < least:
             found = visit
             least = apart
     return found
 
 
 @compiled
-def way_after(state: Rounds, robot: int, place: int, tick: int) -> int:
-    """Where the robot goes from the place."""
-    visit = visit_near(state, robot, place, tick)
-    if visit == NONE or visit + 1 >= state.paths.size[robot]:
-        return NONE
-    return int(state.paths.place[robot][visit + 1])
+def way_after(paths: Paths, robot: int, visit: int) -> int:
+    """Where the robot goes after the visit; `NONE` after its last, or after none."""
+    return int(paths.place[robot][visit + 1]) if visit != NONE and visit + 1 < paths.size[robot] else NONE
 
 
 @compiled

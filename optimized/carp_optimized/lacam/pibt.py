@@ -12,7 +12,7 @@ from carp_optimized.crowds.crowd import GONE, Crowd
 from carp_optimized.jit.compiling import compiled
 from carp_optimized.jit.kinds import Ints, IntTable, Longs, Numbers
 from carp_optimized.lacam.guides import Guides, next_on_guide
-from carp_optimized.neighbourhood.orders import next_number
+from carp_optimized.neighbourhood.orders import next_number, swap
 from carp_optimized.state.arrays import NONE
 
 NOWHERE = -2
@@ -135,9 +135,7 @@ def ask(crowd: Crowd, step: Step, places: Ints, top: int, robot: int) -> None:
     partner = partner_of(crowd, step, places, robot, int(wishes[0]))
     if partner != NONE:
         for k in range(count // 2):
-            wish = int(wishes[k])
-            wishes[k] = wishes[count - 1 - k]
-            wishes[count - 1 - k] = wish
+            swap(wishes, k, count - 1 - k)
     step.robot[top] = robot
     step.partner[top] = partner
     step.foremost[top] = wishes[0]

@@ -1,15 +1,18 @@
-"""The orders of a neighbourhood (`neighbourhood/orders`), one after the other in lexicographic order."""
+"""The orders of a neighbourhood: all (`neighbourhood/orders`), one after the other in lexicographic order, or drawn."""
 
 import numpy as np
 
 from carp_optimized.jit.compiling import compiled
-from carp_optimized.jit.kinds import Ints, Numbers
+from carp_optimized.jit.kinds import Ints, Longs, Numbers
 from carp_optimized.state.arrays import Work
 
 GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 FIRST_MIX = np.uint64(0xBF58476D1CE4E5B9)
 KEY_BITS = 62
 SECOND_MIX = np.uint64(0x94D049BB133111EB)
+PIVOTS_WAY, OTHER_WAYS, DRAWN = range(3)  # the robots that go first, of four choices; else none does
+NOISE = 16  # ticks by which robots may change places
+AFTER = 1 << 40  # more than any tick
 
 
 @compiled
@@ -20,6 +23,52 @@ def next_number(stream: Numbers) -> np.uint64:
     mixed = (mixed ^ (mixed >> np.uint64(30))) * FIRST_MIX
     mixed = (mixed ^ (mixed >> np.uint64(27))) * SECOND_MIX
     return np.uint64(mixed ^ (mixed >> np.uint64(31)))
+
+
+@compiled
+def choice(stream: Numbers, among: int) -> int:
+    """A choice among that many (`polish/draws`)."""
+    return int(np.int64(next_number(stream) % np.uint64(among)))
+
+
+@compiled
+def swap(row: Ints, one: int, other: int) -> None:
+    """Swap two entries."""
+    swapped = row[one]
+    row[one] = row[other]
+    row[other] = swapped
+
+
+@compiled
+def shuffle(stream: Numbers, row: Ints, first: int, size: int) -> None:
+    """Shuffle the entries from the first on, up to that size."""
+    for k in range(size - 1, first, -1):
+        swap(row, k, first + choice(stream, k - first + 1))
+
+
+@compiled
+def put_in_turn(
+    stream: Numbers, members: Ints, keys: Longs, k: int, tick: int, is_own: bool, leaders: int, noise: int
+) -> None:
+    """Put member k, which crosses at the tick, among those before it: those that lead first, each with a drawn delay.
+
+    Its way is the pivot's own, or not.
+    """
+    robot = int(members[k])
+    key = tick + choice(stream, noise)
+    if (
+        (leaders == PIVOTS_WAY and not is_own)
+        or (leaders == OTHER_WAYS and is_own)
+        or (leaders == DRAWN and choice(stream, 2) == 0)
+    ):
+        key += AFTER
+    place = k
+    while place > 0 and keys[place - 1] > key:
+        keys[place] = keys[place - 1]
+        members[place] = members[place - 1]
+        place -= 1
+    keys[place] = key
+    members[place] = robot
 
 
 @compiled
@@ -100,19 +149,13 @@ def draw_orders(work: Work, size: int, sample: int, stream: Numbers) -> int:
             row = int(index[missing])
             for k in range(size):
                 rows[row][k] = k
-            for k in range(size - 1, 0, -1):
-                other = int(next_number(stream) % np.uint64(k + 1))
-                swapped = rows[row][k]
-                rows[row][k] = rows[row][other]
-                rows[row][other] = swapped
+            shuffle(stream, rows[row], 0, size)
             work.row_key[row] = key_of(rows[row], size)
         sort_rows(work, sample, size)
         distinct = 1
         for row in range(1, sample):
             if precedes(work, int(index[distinct - 1]), int(index[row]), size) != 0:
-                swapped = index[distinct]
-                index[distinct] = index[row]
-                index[row] = swapped
+                swap(index, distinct, row)
                 distinct += 1
     return sample
 
@@ -133,16 +176,12 @@ def next_permutation(order: Ints, size: int, shared: int) -> int:
     for k in range(place + 2, size):  # sort what follows
         here = k
         while here > place + 1 and order[here - 1] > order[here]:
-            swapped = order[here]
-            order[here] = order[here - 1]
-            order[here - 1] = swapped
+            swap(order, here, here - 1)
             here -= 1
     following = place + 1
     while order[following] < order[place]:
         following += 1
-    swapped = order[place]
-    order[place] = order[following]
-    order[following] = swapped
+    swap(order, place, following)
     return place
 
 

@@ -10,13 +10,10 @@ them, and plans them in the order in which they cross it, changed a little by dr
 before the other. Of 16 robots in a drawn order hardly any could be planned as well as before.
 """
 
-import numpy as np
-
 from carp_optimized.jit.compiling import compiled, entry
-from carp_optimized.jit.kinds import Numbers
 from carp_optimized.jit.references import Native
 from carp_optimized.neighbourhood.distances import Mean, distance_below, is_apart, is_less
-from carp_optimized.neighbourhood.orders import next_number
+from carp_optimized.neighbourhood.orders import NOISE, choice, put_in_turn, shuffle, swap
 from carp_optimized.queries.search import find_plan_only
 from carp_optimized.queries.windows import reserve, withdraw
 from carp_optimized.state.arrays import BLOCK, MOST_MEMBERS, MOST_TURNS, NEVER, NONE, UNASKED, Polish, State
@@ -28,9 +25,6 @@ SURE = 1 << 16  # a chance is in parts of this
 REPAIR, DELAYED, CONTESTED, NEAR = range(4)
 LEAST_MEMBERS = 4
 SIZES = MOST_MEMBERS - LEAST_MEMBERS + 1
-PIVOTS_WAY, OTHER_WAYS, DRAWN = range(3)  # the robots that go first, of four choices; else none does
-NOISE = 16  # ticks by which robots may change places
-AFTER = 1 << 40  # more than any tick
 
 
 @entry
@@ -44,12 +38,6 @@ def play_rounds(native: Native[State], native_polish: Native[Polish], native_emp
             return turn
         polish.counts[TURN] += 1
     return rounds
-
-
-@compiled
-def choice(stream: Numbers, among: int) -> int:
-    """A choice among that many (`polish/draws`)."""
-    return int(next_number(stream) % np.uint64(among))
 
 
 @compiled
@@ -81,7 +69,8 @@ def play_round(state: State, polish: Polish, empty: State) -> bool:
     else:
         candidates = draw_in_way(state, polish, empty, kind, pivot)
     size = choose_members(polish, pivot, candidates)
-    draw_order(polish, size, kind == REPAIR)
+    is_first = kind == REPAIR or choice(polish.stream, 2) == 0
+    shuffle(polish.stream, polish.members, 1 if is_first else 0, size)  # `polish/order`
     replan_members(state, polish, size)
     return True
 
@@ -127,7 +116,7 @@ def draw_in_way(state: State, polish: Polish, empty: State, kind: int, pivot: in
             polish.candidates[count] = robot
             count += 1
     for k in range(count):
-        swap_places(polish, k, k + choice(polish.stream, count - k))
+        swap(polish.candidates, k, k + choice(polish.stream, count - k))
     return count
 
 
@@ -145,14 +134,6 @@ def plan_alone(polish: Polish, empty: State, robot: int) -> int:
             followed = first_visits(empty, int(polish.plans[robot]), int(polish.past[robot]))
         polish.alone[robot] = find_plan_only(empty, robot, followed, now, NEVER)
     return int(polish.alone[robot])
-
-
-@compiled
-def swap_places(polish: Polish, one: int, other: int) -> None:
-    """Swap two candidates."""
-    robot = int(polish.candidates[one])
-    polish.candidates[one] = polish.candidates[other]
-    polish.candidates[other] = robot
 
 
 @compiled
@@ -291,24 +272,11 @@ def draw_turns(state: State, polish: Polish, size: int, chosen: int) -> None:
     leaders = choice(polish.stream, 4)
     noise = 1 + choice(polish.stream, 2) * (NOISE - 1)
     for k in range(size):
-        robot = int(polish.members[k])
-        record = int(polish.plans[robot])
+        record = int(polish.plans[polish.members[k]])
         visit = crossing(state, record, chosen)
-        key = int(state.records.enter[visit]) + choice(polish.stream, noise)
+        enter = int(state.records.enter[visit])
         is_own = way_after(state, record, visit) == own
-        if (
-            (leaders == PIVOTS_WAY and not is_own)
-            or (leaders == OTHER_WAYS and is_own)
-            or (leaders == DRAWN and choice(polish.stream, 2) == 0)
-        ):
-            key += AFTER
-        place = k
-        while place > 0 and polish.whole[place - 1] > key:
-            polish.whole[place] = polish.whole[place - 1]
-            polish.members[place] = polish.members[place - 1]
-            place -= 1
-        polish.whole[place] = key
-        polish.members[place] = robot
+        put_in_turn(polish.stream, polish.members, polish.whole, k, enter, is_own, leaders, noise)
 
 
 @compiled
@@ -395,19 +363,6 @@ def is_among(polish: Polish, count: int, robot: int) -> bool:
         if polish.members[k] == robot:
             return True
     return False
-
-
-@compiled
-def draw_order(polish: Polish, size: int, is_repair: bool) -> None:
-    """Put the members into the order in which they are planned (`polish/order`)."""
-    first = 0
-    if is_repair or choice(polish.stream, 2) == 0:
-        first = 1
-    for k in range(size - 1, first, -1):
-        other = first + choice(polish.stream, k - first + 1)
-        robot = int(polish.members[k])
-        polish.members[k] = polish.members[other]
-        polish.members[other] = robot
 
 
 @compiled
