@@ -118,8 +118,14 @@ def entry_of(state: State, window: int) -> int:
 
 
 @compiled
+def key_of(state: State, slot: int, window: int) -> int:
+    """The key of `query/ties` of a window that is entered."""
+    return (entry_of(state, window) << 32) + toll_of(state, slot, int(state.windows.resource[window]))
+
+
+@compiled
 def f_of(state: State, slot: int, window: int) -> int:
-    """The f of a window that is entered."""
+    """The f of a window, whether it is entered or not."""
     return entry_of(state, window) + (toll_of(state, slot, int(state.windows.resource[window])) >> 32)
 
 
@@ -289,27 +295,19 @@ def look_before(
 def expand_gathered(state: State, robot: int, slot: int, goal_window: int, count: int) -> None:
     """Expand the windows gathered in the order of `query/ties`, until the goal is entered at its first tick."""
     ending = state.search.ending
-    windows = state.windows
-    latest = int(windows.start[goal_window])
+    latest = int(state.windows.start[goal_window])
     size = 0
     for k in range(count):
         window = int(ending.gathered[k])
-        entry = entry_of(state, window)
-        if entry != NEVER:
-            push(
-                ending.keys,
-                ending.nodes,
-                size,
-                (entry << 32) + toll_of(state, slot, int(windows.resource[window])),
-                window,
-            )
+        if entry_of(state, window) != NEVER:
+            push(ending.keys, ending.nodes, size, key_of(state, slot, window), window)
             size += 1
     while size > 0 and entry_of(state, goal_window) != latest:
         key = int(ending.keys[0])
         window = int(ending.nodes[0])
         size -= 1
         replace_root(ending.keys, ending.nodes, size, int(ending.keys[size]), int(ending.nodes[size]))
-        if key == (entry_of(state, window) << 32) + toll_of(state, slot, int(windows.resource[window])):
+        if key == key_of(state, slot, window):
             size = expand_one(state, robot, slot, window, count, size, latest)
 
 

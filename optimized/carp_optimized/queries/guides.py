@@ -9,7 +9,7 @@ its end, and asks again.
 
 from carp_optimized.jit.compiling import RoomExhausted, compiled
 from carp_optimized.queries.heap import push, replace_root
-from carp_optimized.state.arrays import FURTHER, LARGEST, NONE, TOO_FAR, UNREACHABLE, State
+from carp_optimized.state.arrays import FURTHER, LARGEST, NONE, TOO_FAR, UNREACHABLE, Guides, State
 
 MOST_LEVELS = 256  # the longest duration, where guides are made level by level
 
@@ -21,10 +21,7 @@ def guide_slot(state: State, robot: int, resource: int) -> int:
     destination = int(state.robots.destination[robot])
     slot = int(guides.slot[destination])
     if slot == NONE:
-        slot = int(guides.next[0])
-        guides.next[0] = (slot + 1) % guides.holds.size
-        if guides.holds[slot] != NONE:
-            guides.slot[guides.holds[slot]] = NONE
+        slot = next_slot(guides)
         reach(state, slot, destination, int(state.robots.start[robot]), guides.detour)
     if guides.ticks[slot][resource] == FURTHER:
         reach_all(state, slot)
@@ -36,12 +33,18 @@ def guide_of(state: State, destination: int) -> int:
     """The slot that holds the guide of a destination of stops, made as far as moves lead."""
     guides = state.guides
     if guides.slot[destination] == NONE:
-        slot = int(guides.next[0])
-        guides.next[0] = (slot + 1) % guides.holds.size
-        if guides.holds[slot] != NONE:
-            guides.slot[guides.holds[slot]] = NONE
-        reach(state, slot, destination, int(guides.goal[destination]), LARGEST)
+        reach(state, next_slot(guides), destination, int(guides.goal[destination]), LARGEST)
     return int(guides.slot[destination])
+
+
+@compiled
+def next_slot(guides: Guides) -> int:
+    """The slot to be given away, whose guide is lost."""
+    slot = int(guides.next[0])
+    guides.next[0] = (slot + 1) % guides.holds.size
+    if guides.holds[slot] != NONE:
+        guides.slot[guides.holds[slot]] = NONE
+    return slot
 
 
 @compiled

@@ -9,11 +9,9 @@ from carp_optimized.jit.compiling import RecordsExhausted, RoomExhausted, TicksE
 from carp_optimized.jit.kinds import Ints, Longs
 from carp_optimized.queries.guides import guide_of, guide_slot
 from carp_optimized.queries.ways_back import CUT_OFF, first_look, look_back
-from carp_optimized.queries.windows import end_of_run, is_exchange, last_by, skip_below, start_of_run
+from carp_optimized.queries.windows import STANDING, end_of_run, is_exchange, skip_below, stand, start_of_run
 from carp_optimized.state.arrays import LARGEST, NEVER, NONE, TOO_FAR, UNKNOWN, UNREACHABLE, State
 from carp_optimized.state.records import close_record, start_record
-
-STANDING = 0  # as in `search`
 
 
 @compiled
@@ -162,12 +160,7 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
         return NONE
     state.search.generation[0] += 1
     base = int(state.search.generation[0]) << 32
-    own_slot = last_by(windows, resource, enter)
-    end_slot = end_of_run(state, own_slot, behind)
-    windows.resource[STANDING] = resource
-    windows.end[STANDING] = windows.end[end_slot]
-    windows.source[STANDING] = windows.source[end_slot]
-    own_slot = start_of_run(state, own_slot, behind)
+    own_slot = stand(state, resource, enter, behind)
     entered = state.search.reached  # by a label of whatever number of stops served
     entered[own_slot] = base - enter
     start = STANDING * stride + served

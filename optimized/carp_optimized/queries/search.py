@@ -7,7 +7,16 @@ from carp_optimized.queries.guides import guide_of, guide_slot, reach_all, toll_
 from carp_optimized.queries.heap import push, replace_root
 from carp_optimized.queries.over_stops import find_over_stops, has_goal_alone_left, has_stops
 from carp_optimized.queries.ways_back import CUT_OFF, first_look, look_back
-from carp_optimized.queries.windows import end_of_run, fits, is_exchange, last_by, plan_fits, skip_below, start_of_run
+from carp_optimized.queries.windows import (
+    STANDING,
+    end_of_run,
+    fits,
+    is_exchange,
+    plan_fits,
+    skip_below,
+    stand,
+    start_of_run,
+)
 from carp_optimized.state.arrays import (
     ASKED,
     BLOCK,
@@ -27,7 +36,6 @@ EVERY = (1 << BLOCK) - 1
 LOW = (1 << 32) - 1
 FIRST_TRY = 32  # expansions until the end of the plan is looked for
 FEWEST_LOOKS = 64  # at windows, when it is
-STANDING = 0  # the slot of no row: a copy of the window in which the robot is when it sets out
 
 
 @compiled
@@ -185,18 +193,6 @@ def find_plan_alone(empty: State, robot: int, now: int) -> int:
     record = start_record(empty, robot, 0, 0)
     write_record(empty, record, before, expansions)
     return record
-
-
-@compiled
-def stand(state: State, resource: int, enter: int, behind: int) -> int:
-    """Copy the window around the tick into the slot `STANDING`; return its own slot."""
-    windows = state.windows
-    slot = last_by(windows, resource, enter)
-    last = end_of_run(state, slot, behind)
-    windows.resource[STANDING] = resource
-    windows.end[STANDING] = windows.end[last]
-    windows.source[STANDING] = windows.source[last]
-    return start_of_run(state, slot, behind)
 
 
 @compiled

@@ -12,6 +12,8 @@ from carp_optimized.queries.blocks import below, width
 from carp_optimized.state.arrays import BLOCK, GROUPED, NEVER, NONE, Graph, Records, Rows, State
 from carp_optimized.state.groups import are_close, is_within
 
+STANDING = 0  # the slot of no row: a copy of the window in which the robot is when it sets out
+
 
 @compiled
 def last_by(rows: Rows, resource: int, tick: int) -> int:
@@ -403,6 +405,18 @@ def start_of_run(state: State, slot: int, behind: int) -> int:
     while slot > first and windows.rank[slot - 1] > behind:
         slot -= 1
     return slot
+
+
+@compiled
+def stand(state: State, resource: int, enter: int, behind: int) -> int:
+    """Copy the window around the tick into the slot `STANDING`; return its own slot."""
+    windows = state.windows
+    slot = last_by(windows, resource, enter)
+    last = end_of_run(state, slot, behind)
+    windows.resource[STANDING] = resource
+    windows.end[STANDING] = windows.end[last]
+    windows.source[STANDING] = windows.source[last]
+    return start_of_run(state, slot, behind)
 
 
 @compiled
