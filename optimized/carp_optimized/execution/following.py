@@ -59,8 +59,7 @@ def propagate(ranked: Longs, enter: Longs, first: Longs, before: Longs, ticks: L
 class Timetable:
     """A lawful solution as arrays: its visits are numbered plan by plan, plan p from `starts[p]` on.
 
-    `before`, `after` and `ticks` are the edges, sorted by `after`, those into visit n from `first[n]` on. An edge that
-    `waits` for leaving gets longer by a delay at the visit before.
+    `before`, `after` and `ticks` are the edges, sorted by `after`, those into visit n from `first[n]` on.
     """
 
     instance: Instance
@@ -73,33 +72,18 @@ class Timetable:
     before: Longs
     after: Longs
     ticks: Longs
-    waits: Flags
 
-    def number(self, robot: RobotId, place: int) -> int:
-        """The number of a visit."""
-        plan = next(number for number, plan in enumerate(self.solution.plans) if plan.robot == robot)
-        return int(self.starts[plan]) + place
-
-    def times(self, least: Longs, delays: Longs | None = None) -> Longs:
-        """When each visit is entered at the earliest, none before its least tick; `delays` by visit."""
-        ticks = self.ticks if delays is None else self.ticks + np.where(self.waits, delays[self.before], 0)
+    def times(self, least: Longs) -> Longs:
+        """When each visit is entered at the earliest, none before its least tick."""
         times = least.copy()
-        propagate(self.ranked, self.enter, self.first, self.before, ticks, times)
+        propagate(self.ranked, self.enter, self.first, self.before, self.ticks, times)
         return times
-
-    def releases(self) -> Longs:
-        """The least tick of each visit as its robot's release has it."""
-        least = np.zeros(self.enter.size, np.int64)
-        robots = self.instance.robot
-        least[self.starts[:-1]] = [robots[plan.robot].release for plan in self.solution.plans]
-        return least
 
     def least_after(self, now: int, entered: Mapping[RobotId, Sequence[int]]) -> Longs:
         """The least ticks of visits after now, and the ticks of those that have been entered."""
-        least = self.releases()
-        is_first = np.zeros(least.size, np.bool_)
-        is_first[self.starts[:-1]] = True
-        least[~is_first | (least <= now)] = now + 1
+        robots = self.instance.robot
+        least = np.full(self.enter.size, now + 1, np.int64)
+        least[self.starts[:-1]] = [max(robots[plan.robot].release, now + 1) for plan in self.solution.plans]
         for plan, start in zip(self.solution.plans, self.starts.tolist(), strict=False):
             ticks = entered.get(plan.robot, ())
             least[start : start + len(ticks)] = ticks
@@ -190,7 +174,6 @@ def timetable(instance: Instance, solution: Solution) -> Timetable:
     before = np.concatenate([travels, np.where(is_last[one], one, one + 1)])
     after = np.concatenate([travels + 1, other])
     ticks = np.concatenate([duration[travels], np.where(is_last[one], duration[one] + wait, wait)])
-    waits = np.concatenate([np.ones(travels.size, np.bool_), is_last[one]])
     by_after = np.argsort(after, kind="stable")
     return Timetable(
         instance=instance,
@@ -203,7 +186,6 @@ def timetable(instance: Instance, solution: Solution) -> Timetable:
         before=before[by_after],
         after=after[by_after],
         ticks=ticks[by_after],
-        waits=waits[by_after],
     )
 
 
