@@ -15,7 +15,6 @@ from carp_optimized.crowds.rounds import (
     MISSED,
     MOST_MEMBERS,
     ROUNDS,
-    SURE,
     TOTAL,
     TURNING,
     Rounds,
@@ -29,6 +28,7 @@ from carp_optimized.crowds.soft_sipp import no_soft_query
 from carp_optimized.crowds.stays import Paths, no_paths, no_stays, with_more_room
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
+from carp_optimized.neighbourhood.polishing import SURE
 
 WORK = 1 << 15
 """The labels that one compiled call expands before it looks whether to go on: some milliseconds."""

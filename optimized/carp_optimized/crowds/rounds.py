@@ -17,11 +17,11 @@ from carp_optimized.crowds.stays import Paths, Stays, arrival, copy_path, drop, 
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints, Longs, Numbers
 from carp_optimized.jit.references import Native, dereference
-from carp_optimized.neighbourhood.orders import NOISE, choice, put_in_turn, shuffle
+from carp_optimized.neighbourhood.orders import choice, shuffle
+from carp_optimized.neighbourhood.polishing import NOISE, SURE, put_in_turn
 from carp_optimized.state.arrays import NEVER, NONE
 
 TOTAL, BEST, CHANCE, DIRTY, MARK, SIZE, WORK, ROUNDS, MISSED, TURNING = range(10)  # the counts
-SURE = 1 << 16  # a chance is in parts of this
 IN_WAY, CROSSING, TURNS, DRAWN = range(4)  # the kinds
 KINDS = 4
 GREEDY = WHOLE // 2

@@ -1,18 +1,15 @@
-"""The orders of a neighbourhood: all (`neighbourhood/orders`), one after the other in lexicographic order, or drawn."""
+"""The orders of a neighbourhood (`neighbourhood/orders`), one after the other in lexicographic order."""
 
 import numpy as np
 
 from carp_optimized.jit.compiling import compiled
-from carp_optimized.jit.kinds import Ints, Longs, Numbers
+from carp_optimized.jit.kinds import Ints, Numbers
 from carp_optimized.state.arrays import Work
 
 GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 FIRST_MIX = np.uint64(0xBF58476D1CE4E5B9)
 KEY_BITS = 62
 SECOND_MIX = np.uint64(0x94D049BB133111EB)
-PIVOTS_WAY, OTHER_WAYS, DRAWN = range(3)  # the robots that go first, of four choices; else none does
-NOISE = 16  # ticks by which robots may change places
-AFTER = 1 << 40  # more than any tick
 
 
 @compiled
@@ -44,31 +41,6 @@ def shuffle(stream: Numbers, row: Ints, first: int, size: int) -> None:
     """Shuffle the entries from the first on, up to that size."""
     for k in range(size - 1, first, -1):
         swap(row, k, first + choice(stream, k - first + 1))
-
-
-@compiled
-def put_in_turn(
-    stream: Numbers, members: Ints, keys: Longs, k: int, tick: int, is_own: bool, leaders: int, noise: int
-) -> None:
-    """Put member k, which crosses at the tick, among those before it: those that lead first, each with a drawn delay.
-
-    Its way is the pivot's own, or not.
-    """
-    robot = int(members[k])
-    key = tick + choice(stream, noise)
-    if (
-        (leaders == PIVOTS_WAY and not is_own)
-        or (leaders == OTHER_WAYS and is_own)
-        or (leaders == DRAWN and choice(stream, 2) == 0)
-    ):
-        key += AFTER
-    place = k
-    while place > 0 and keys[place - 1] > key:
-        keys[place] = keys[place - 1]
-        members[place] = members[place - 1]
-        place -= 1
-    keys[place] = key
-    members[place] = robot
 
 
 @compiled

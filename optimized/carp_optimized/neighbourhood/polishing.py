@@ -11,9 +11,10 @@ before the other. Of 16 robots in a drawn order hardly any could be planned as w
 """
 
 from carp_optimized.jit.compiling import compiled, entry
+from carp_optimized.jit.kinds import Ints, Longs, Numbers
 from carp_optimized.jit.references import Native
 from carp_optimized.neighbourhood.distances import Mean, distance_below, is_apart, is_less
-from carp_optimized.neighbourhood.orders import NOISE, choice, put_in_turn, shuffle, swap
+from carp_optimized.neighbourhood.orders import choice, shuffle, swap
 from carp_optimized.queries.search import find_plan_only
 from carp_optimized.queries.windows import reserve, withdraw
 from carp_optimized.state.arrays import BLOCK, MOST_MEMBERS, MOST_TURNS, NEVER, NONE, UNASKED, Polish, State
@@ -25,6 +26,9 @@ SURE = 1 << 16  # a chance is in parts of this
 REPAIR, DELAYED, CONTESTED, NEAR = range(4)
 LEAST_MEMBERS = 4
 SIZES = MOST_MEMBERS - LEAST_MEMBERS + 1
+PIVOTS_WAY, OTHER_WAYS, DRAWN = range(3)  # the robots that go first, of four choices; else none does
+NOISE = 16  # ticks by which robots may change places
+AFTER = 1 << 40  # more than any tick
 
 
 @entry
@@ -277,6 +281,31 @@ def draw_turns(state: State, polish: Polish, size: int, chosen: int) -> None:
         enter = int(state.records.enter[visit])
         is_own = way_after(state, record, visit) == own
         put_in_turn(polish.stream, polish.members, polish.whole, k, enter, is_own, leaders, noise)
+
+
+@compiled
+def put_in_turn(
+    stream: Numbers, members: Ints, keys: Longs, k: int, tick: int, is_own: bool, leaders: int, noise: int
+) -> None:
+    """Put member k, which crosses at the tick, among those before it: those that lead first, each with a drawn delay.
+
+    Its way is the pivot's own, or not.
+    """
+    robot = int(members[k])
+    key = tick + choice(stream, noise)
+    if (
+        (leaders == PIVOTS_WAY and not is_own)
+        or (leaders == OTHER_WAYS and is_own)
+        or (leaders == DRAWN and choice(stream, 2) == 0)
+    ):
+        key += AFTER
+    place = k
+    while place > 0 and keys[place - 1] > key:
+        keys[place] = keys[place - 1]
+        members[place] = members[place - 1]
+        place -= 1
+    keys[place] = key
+    members[place] = robot
 
 
 @compiled
