@@ -4,7 +4,7 @@ Lengths and positions are whole millimetres, speeds are millimetres a second.
 """
 
 from collections.abc import Callable, Container, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import isqrt
 
@@ -90,9 +90,9 @@ class Layout:
         """What is not expressed, in the order in which it was found."""
         return tuple(Note(feature, tuple(dict.fromkeys(lines))) for feature, lines in self.left_out.items())
 
-    def note(self, feature: str, at: Tree | None) -> None:
-        """Note a feature that is not expressed, if it is there."""
-        if at is not None and at.value not in ([], {}, "", None):
+    def note(self, feature: str, at: Tree | None, *, usual: str | None = None) -> None:
+        """Note a feature that is not expressed, if it is there and not the usual value, which says nothing."""
+        if at is not None and at.value not in ([], {}, "", None, usual):
             self.left_out.setdefault(feature, []).append(at.line)
 
     def note_others(self, thing: Tree, known: Container[str], features: Mapping[str, str] = NO_FEATURES) -> None:
@@ -100,6 +100,12 @@ class Layout:
         for name, value in thing.fields.items():
             if name not in known:
                 self.note(features.get(name, f"the field {name}"), value)
+
+    def require_points(self, at: Tree, *ids: str) -> None:
+        """Raise `Refusal` where one of the points is not of the layout."""
+        for id in ids:
+            if id not in self.points:
+                raise at.refuse(f"the point {id!r} must be one of the layout")
 
     def point(self, at: Tree, id: str, place: tuple[Fraction, Fraction] | None, *, stands: bool = True) -> None:
         """Add a point, at a place in mm."""
@@ -124,36 +130,37 @@ class Layout:
     ) -> tuple[str, ...]:
         """Add a lane, and with `back` a second one the other way; without a name it is called by its ends.
 
-        `backwards` is whether vehicles drive backwards on the second, or on the one. The positions of ends that are not
-        on one `level` do not tell the length.
+        `back_speed` is that of the second if it differs. `backwards` is whether vehicles drive backwards on the second,
+        or on the one. The positions of ends that are not on one `level` do not tell the length.
         """
-        for end in ends:
-            if end not in self.points:
-                raise at.refuse(f"the point {end!r} must be one of the layout")
-        name = id
-        if name is None:
-            name = f"{ends[0]} -> {ends[1]}"
-            while name in self.lanes or name in self.points:
-                name += "'"
-        if name in self.lanes or name in self.points:
-            raise at.refuse(f"the name {name!r} must be given once")
+        self.require_points(at, *ends)
+        name = f"{ends[0]} -> {ends[1]}" if id is None else id
+        while id is None and self._is_taken(name):
+            name += "'"
+        self._require_new(at, name)
         distance = self.distance(*ends) if level else None
         if distance == 0 and length is None:
             raise at.refuse(f"the length of a lane must be above 0, and {ends[0]!r} and {ends[1]!r} are at one place")
         millimetres = distance if length is None else -(-length // 1)
         floor = frozenset(self.places.get(end, end) for end in ends)
         strip = self.straight.setdefault(floor, name) if millimetres == distance else name
-        self.lanes[name] = Lane(name, *ends, millimetres, speed, strip, share or Fraction(1), backwards and not back)
+        lane = Lane(name, *ends, millimetres, speed, strip, share or Fraction(1), backwards and not back)
+        self.lanes[name] = lane
         if not back:
             return (name,)
-        return name, *self._reverse(at, self.lanes[name], back_speed, backwards=backwards)
+        other = f"{name} (reverse)"
+        self._require_new(at, other)
+        self.lanes[other] = replace(
+            lane, id=other, source=ends[1], target=ends[0], speed=back_speed or speed, backwards=backwards
+        )
+        return name, other
 
-    def _reverse(self, at: Tree, lane: Lane, speed: Fraction | None, *, backwards: bool) -> tuple[str, ...]:
-        name = f"{lane.id} (reverse)"
-        if name in self.lanes or name in self.points:
+    def _is_taken(self, name: str) -> bool:
+        return name in self.lanes or name in self.points
+
+    def _require_new(self, at: Tree, name: str) -> None:
+        if self._is_taken(name):
             raise at.refuse(f"the name {name!r} must be given once")
-        self.lanes[name] = Lane(name, lane.target, lane.source, lane.length, speed, lane.strip, lane.share, backwards)
-        return (name,)
 
     def block(self, at: Tree, id: str, members: Sequence[tuple[Tree, str]], capacity: int = 1) -> None:
         """Add a block of points and lanes; a member is each lane of its strip."""
@@ -163,7 +170,7 @@ class Layout:
         for place, member in members:
             if member in named:
                 raise place.refuse(f"the member {member!r} must be named once in a block")
-            if member not in self.points and member not in self.lanes:
+            if not self._is_taken(member):
                 raise place.refuse(f"the member {member!r} must be a point or a lane of the layout")
             named[member] = None
         self.blocks[id] = Block(id, tuple(named), capacity)
@@ -172,9 +179,7 @@ class Layout:
         """Add a vehicle at a point."""
         if id in self.vehicles:
             raise at.refuse(f"the vehicle {id!r} must be given once")
-        for end in (start, goal):
-            if end is not None and end not in self.points:
-                raise at.refuse(f"the point {end!r} must be one of the layout")
+        self.require_points(at, start, *([] if goal is None else [goal]))
         self.vehicles[id] = Vehicle(id, start, goal)
 
     @staticmethod

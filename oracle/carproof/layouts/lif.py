@@ -12,9 +12,8 @@ from collections.abc import Set as AbstractSet
 from fractions import Fraction
 
 from carproof.layouts.layout import Layout, Reader
-from carproof.layouts.located import Tree
+from carproof.layouts.located import METRE, Tree
 
-METRE = 1000
 NODES = ("vehicleTypeNodeProperties", "mobileRobotTypeNodeProperties")
 EDGES = ("vehicleTypeEdgeProperties", "mobileRobotTypeEdgeProperties")
 LEFT_OUT = {
@@ -40,7 +39,7 @@ KNOWN.add("physicalLineGuidedProperty")
 
 
 def _looks_like(tree: Tree) -> bool:
-    return isinstance(tree.value, dict) and tree.get("metaInformation") is not None
+    return tree.get("metaInformation") is not None
 
 
 def read(tree: Tree) -> Layout:
@@ -99,16 +98,12 @@ def _types(layout: Layout, thing: Tree, names: tuple[str, ...]) -> list[Tree]:
 
 def _edge(layout: Layout, edge: Tree) -> None:
     ends = edge["startNodeId"].quoted_text, edge["endNodeId"].quoted_text
-    speeds: list[Fraction] = []
-    lengths: list[Fraction] = []
+    speeds: list[Fraction | None] = []
+    lengths: list[Fraction | None] = []
     for each in _types(layout, edge, EDGES):
-        speed, curve = each.get("maxSpeed", "maximumSpeed"), each.get("trajectory")
-        guided = each.get("physicalLineGuidedProperty")
-        length = None if guided is None else guided.get("length")
-        if speed is not None:
-            speeds.append(METRE * speed.positive)
-        if length is not None:
-            lengths.append(METRE * length.positive)
+        guided, curve = each.get("physicalLineGuidedProperty"), each.get("trajectory")
+        speeds.append(each.metres("maxSpeed", "maximumSpeed"))
+        lengths.append(None if guided is None else guided.metres("length"))
         if curve is not None:
             layout.note(
                 "the shape of trajectories; their length is that of the control polygon, which is no less", curve
@@ -126,7 +121,7 @@ def _edge(layout: Layout, edge: Tree) -> None:
         edge["edgeId"].quoted_text,
         ends,
         level=not stays,
-        speed=min(speeds, default=None),
+        speed=min((each for each in speeds if each), default=None),
         length=max((each for each in lengths if each), default=None),
     )
 

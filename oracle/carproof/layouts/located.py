@@ -21,6 +21,8 @@ MOST_VALUES = 2_000_000
 DEEPEST = 100
 LARGEST = 10**9
 """Of a number in a layout, in its own unit and in mm."""
+METRE = 1000
+"""In mm."""
 RIGHT_LAYOUT = Code(
     "layout/file",
     f"A layout is XML without a document type, YAML or JSON, of at most {MOST_BYTES // 2**20} MiB, {MOST_VALUES} "
@@ -149,6 +151,15 @@ class Tree:
     def get(self, *names: str) -> "Tree | None":
         """The first of these fields that there is."""
         return next((self.fields[name] for name in names if name in self.fields), None)
+
+    def says(self, name: str) -> Value:
+        """The value of a field, `None` if it is absent."""
+        return self.fields[name].value if name in self.fields else None
+
+    def metres(self, *names: str) -> Fraction | None:
+        """The first of these fields that there is in mm, a number of metres above 0; `None` without one."""
+        found = self.get(*names)
+        return None if found is None else METRE * found.positive
 
     def all(self, name: str) -> list["Tree"]:
         """The entries of a field, none if it is absent."""

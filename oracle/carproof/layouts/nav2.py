@@ -8,9 +8,8 @@ m/s, and `speed_limit` in percent of the speed of the robot.
 from fractions import Fraction
 
 from carproof.layouts.layout import Layout, Reader
-from carproof.layouts.located import Tree
+from carproof.layouts.located import METRE, Tree
 
-METRE = 1000
 WHOLE = 100
 LINES = ("LineString", "MultiLineString")
 KNOWN = {"id", "startid", "endid", "frame", "metadata"}
@@ -26,8 +25,7 @@ LEFT_OUT = {
 
 
 def _looks_like(tree: Tree) -> bool:
-    kind = tree.get("type") if isinstance(tree.value, dict) else None
-    return kind is not None and kind.value == "FeatureCollection"
+    return tree.says("type") == "FeatureCollection"
 
 
 def read(tree: Tree) -> Layout:
@@ -39,8 +37,7 @@ def read(tree: Tree) -> Layout:
         if kind.value == "Point":
             x, y = each["geometry"]["coordinates"].first(2, "a position must have x and y")
             layout.point(each, properties["id"].name, (METRE * x.number, METRE * y.number))
-            frame = properties.get("frame")
-            layout.note("frames of nodes other than map", frame if frame is not None and frame.value != "map" else None)
+            layout.note("frames of nodes other than map", properties.get("frame"), usual="map")
         elif kind.value not in LINES:
             raise kind.refuse(f"the type must be Point, LineString or MultiLineString, not {kind.shown}")
         layout.note_others(properties, KNOWN, LEFT_OUT)
@@ -53,9 +50,8 @@ def read(tree: Tree) -> Layout:
 
 
 def _edge(layout: Layout, edge: Tree) -> None:
-    metadata = edge.get("metadata")
-    limit = None if metadata is None else metadata.get("abs_speed_limit")
-    share = None if metadata is None else metadata.get("speed_limit")
+    metadata = edge.get("metadata") or Tree(edge.file, edge.line, {})
+    share = metadata.get("speed_limit")
     ends = edge["startid"].name, edge["endid"].name
     if ends[0] == ends[1]:
         layout.note("edges from a node to itself", edge)
@@ -67,7 +63,7 @@ def _edge(layout: Layout, edge: Tree) -> None:
         edge,
         name if is_new else None,
         ends,
-        speed=None if limit is None else METRE * limit.positive,
+        speed=metadata.metres("abs_speed_limit"),
         share=None if share is None else min(share.positive / WHOLE, Fraction(1)),
     )
 

@@ -14,9 +14,8 @@ from functools import partial
 from math import isqrt
 
 from carproof.layouts.layout import Layout, Reader
-from carproof.layouts.located import Tree
+from carproof.layouts.located import METRE, Tree
 
-METRE = 1000
 FINE = 10**9
 """Steps of a pixel to which the lengths of measurements are known."""
 AXIS = 6_378_137_000
@@ -52,7 +51,7 @@ Onto = Callable[[Fraction, Fraction], Place]
 
 
 def _looks_like(tree: Tree) -> bool:
-    return isinstance(tree.value, dict) and tree.get("levels") is not None
+    return tree.get("levels") is not None
 
 
 def read(tree: Tree) -> Layout:
@@ -200,7 +199,7 @@ def _lane(layout: Layout, lane: Tree, ids: list[str], groups: Groups) -> None:
     limit = _plain(options.get("speed_limit"))
     speed = None if limit is None or limit.number == 0 else METRE * limit.positive
     back = both is not None and both.is_true
-    lanes = layout.lane(lane, None, (source, target), speed=speed, back=back, back_speed=speed)
+    lanes = layout.lane(lane, None, (source, target), speed=speed, back=back)
     _note_others(layout, options, OF_LANES, LEFT_OUT)
     graph = _plain(options.get("graph_idx"))
     if graph is not None and graph.whole:

@@ -13,7 +13,7 @@ VERSIONS = ("0.0.4", "0.0.5", "6.", "7.")
 
 
 def _looks_like(tree: Tree) -> bool:
-    return tree.get("<>") is not None and tree["<>"].value == "model" and tree.get("version") is not None
+    return tree.says("<>") == "model" and tree.get("version") is not None
 
 
 def read(tree: Tree) -> Layout:
@@ -24,34 +24,26 @@ def read(tree: Tree) -> Layout:
     layout = Layout(tree, holds_ends=True)
     served = {link["point"].text for location in elements(tree, "location") for link in elements(location, "link")}
     for point in elements(tree, "point"):
-        name, kind = point["name"].text, point.get("type")
+        name, kind = point["name"].text, point.says("type")
         x, y = (point.get(each, other) or point[each] for each, other in _PLACES)
-        stands = (kind is not None and kind.value == "PARK_POSITION") or name in served
-        layout.point(point, name, (x.number, y.number), stands=stands)
-        if kind is not None and kind.value == "REPORT_POSITION":
+        layout.point(point, name, (x.number, y.number), stands=kind == "PARK_POSITION" or name in served)
+        if kind == "REPORT_POSITION":
             layout.note("report positions, at which vehicles may not halt", point)
-        layout.note("properties of points and paths", _first(point, "property"))
+        layout.note("properties of points and paths", point.get("<property>"))
         layout.note("vehicle envelopes of points", point.get("<vehicleEnvelope>"))
-        layout.note("bounding boxes that vehicles must fit at points", _first(point, "maxVehicleBoundingBox"))
-        angle = point.get("vehicleOrientationAngle")
-        layout.note("orientations at points", angle if angle is not None and angle.value != "NaN" else None)
+        layout.note("bounding boxes that vehicles must fit at points", point.get("<maxVehicleBoundingBox>"))
+        layout.note("orientations at points", point.get("vehicleOrientationAngle"), usual="NaN")
     paths = {path["name"].text: _path(layout, path) for path in elements(tree, "path")}
     locations = {location["name"].text for location in elements(tree, "location")}
     for location in elements(tree, "location"):
         for link in elements(location, "link"):
-            if link["point"].text not in layout.points:
-                raise link.refuse(f"the point {link['point'].text!r} must be one of the layout")
+            layout.require_points(link, link["point"].text)
         layout.note("locations; the points that they are linked to are where vehicles stand", location)
     for block in elements(tree, "block"):
         _block(layout, block, paths, locations)
     for vehicle in elements(tree, "vehicle"):
         _vehicle(layout, vehicle)
     return layout
-
-
-def _first(thing: Tree, tag: str) -> Tree | None:
-    """The first child of the tag, if any."""
-    return next(elements(thing, tag), None)
 
 
 _PLACES = (("positionX", "xPosition"), ("positionY", "yPosition"))
@@ -63,14 +55,12 @@ def _path(layout: Layout, path: Tree) -> tuple[str, ...]:
     forward, backward = (path[each].number for each in ("maxVelocity", "maxReverseVelocity"))
     if min(forward, backward) < 0:
         raise path.refuse("the speeds of a path must not be below 0")
-    layout.note("properties of points and paths", _first(path, "property"))
+    layout.note("properties of points and paths", path.get("<property>"))
     layout.note("peripheral operations", path.get("<peripheralOperation>"))
     layout.note("vehicle envelopes of paths", path.get("<vehicleEnvelope>"))
     locked = path.get("locked")
     if (locked is not None and locked.is_true) or not (forward or backward):
-        for end in (source, target):
-            if end not in layout.points:
-                raise path.refuse(f"the point {end!r} must be one of the layout")
+        layout.require_points(path, source, target)
         return ()
     length = path["length"].positive
     if forward:
@@ -105,7 +95,7 @@ def _block(layout: Layout, block: Tree, paths: dict[str, tuple[str, ...]], locat
             members += [(member, lane) for lane in paths[name]]
         else:
             members.append((member, name))
-    if kind is not None and kind.value == "SAME_DIRECTION_ONLY":
+    if block.says("type") == "SAME_DIRECTION_ONLY":
         layout.note("blocks of the type SAME_DIRECTION_ONLY", block)
         return
     named = {name for _, name in members}
@@ -121,9 +111,7 @@ def _block(layout: Layout, block: Tree, paths: dict[str, tuple[str, ...]], locat
 def _vehicle(layout: Layout, vehicle: Tree) -> None:
     """Add a vehicle, if the file says where it is; other vehicles are left to `--robots`."""
     layout.note("speeds of vehicles; --speed sets one for all", vehicle.get("maxVelocity"))
-    layout.note(
-        "sizes of vehicles; --footprint sets one for all", _first(vehicle, "boundingBox") or vehicle.get("length")
-    )
+    layout.note("sizes of vehicles; --footprint sets one for all", vehicle.get("<boundingBox>", "length"))
     start = [
         each["value"] for each in elements(vehicle, "property") if each["name"].value == "loopback:initialPosition"
     ]

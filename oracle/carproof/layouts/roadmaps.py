@@ -9,15 +9,14 @@ if they are known. Positions and lengths are in m, speeds in m/s.
 from fractions import Fraction
 
 from carproof.layouts.layout import Layout, Reader
-from carproof.layouts.located import Tree, elements
+from carproof.layouts.located import METRE, Tree, elements
 
-METRE = 1000
 OF_NODES = {"id", "x", "y", "pos"}
 OF_EDGES = {"id", "source", "target", "key", "length", "speed"}
 
 
 def _looks_annotated(tree: Tree) -> bool:
-    return isinstance(tree.value, dict) and tree.get("roadmap") is not None
+    return tree.get("roadmap") is not None
 
 
 def read_annotated(tree: Tree) -> Layout:
@@ -78,10 +77,8 @@ def _place(place: Tree) -> tuple[Fraction, Fraction]:
 
 
 def _looks_plain(tree: Tree) -> bool:
-    if not isinstance(tree.value, dict):
-        return False
-    is_graphml = "<>" in tree.value and tree["<>"].value == "graphml"
-    return is_graphml or ("nodes" in tree.value and tree.get("links", "edges") is not None)
+    is_node_link = tree.get("nodes") is not None and tree.get("links", "edges") is not None
+    return tree.says("<>") == "graphml" or is_node_link
 
 
 def read_plain(tree: Tree) -> Layout:
@@ -100,17 +97,8 @@ def read_plain(tree: Tree) -> Layout:
         layout.note_others(node, OF_NODES)
     for edge in edges:
         layout.note_others(edge, OF_EDGES)
-        length, speed = edge.get("length"), edge.get("speed")
-        fast = None if speed is None else METRE * speed.positive
-        layout.lane(
-            edge,
-            None,
-            (name(edge["source"]), name(edge["target"])),
-            speed=fast,
-            length=None if length is None else METRE * length.positive,
-            back=not directed,
-            back_speed=fast,
-        )
+        speed, ends = edge.metres("speed"), (name(edge["source"]), name(edge["target"]))
+        layout.lane(edge, None, ends, speed=speed, length=edge.metres("length"), back=not directed)
     return layout
 
 
