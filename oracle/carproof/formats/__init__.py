@@ -99,11 +99,11 @@ def format_of(data: bytes, instance: Instance, file: str = "file") -> str:
     """The format that a solution looks like; raises `Refusal` where two are possible or none is."""
     require_instance(instance)
     text = _text(data)
-    possible = _possible(text, instance)
+    looks = _looks(text)
+    possible = looks if len(looks) == 1 else _fitting(looks, text, instance)
     if len(possible) == 1:
         return possible[0]
-    looks = ", ".join(name for name, each in ADAPTERS.items() if each.looks_like(text))
-    what = f"it could be {looks}" if looks else f"it looks like none of {', '.join(ADAPTERS)}"
+    what = f"it could be {', '.join(looks)}" if looks else f"it looks like none of {', '.join(ADAPTERS)}"
     raise CLEAR_FORMAT.refuse(file, f"the format must be named by --from: {what}")
 
 
@@ -126,18 +126,19 @@ def _adapter(format: str) -> Adapter:
 
 def looks_like_none(data: bytes) -> bool:
     """Whether the data look like no format at all."""
-    return not any(each.looks_like(_text(data)) for each in ADAPTERS.values())
+    return not _looks(_text(data))
 
 
 def _text(data: bytes) -> str:
     return data.decode(errors="surrogateescape").replace("\r\n", "\n")
 
 
-def _possible(text: str, instance: Instance) -> list[str]:
-    """The formats that the data fit; of several, those in which robots begin at their starts, or one if all agree."""
-    names = [name for name, each in ADAPTERS.items() if each.looks_like(text)]
-    if len(names) == 1:
-        return names
+def _looks(text: str) -> list[str]:
+    return [name for name, each in ADAPTERS.items() if each.looks_like(text)]
+
+
+def _fitting(names: list[str], text: str, instance: Instance) -> list[str]:
+    """The formats in which the text can be read and robots begin at their starts, or one if all agree."""
     read = {name: solution for name in names if (solution := _solution(text, instance, name)) is not None}
     begin = [name for name, solution in read.items() if _begins_at_starts(solution, instance)]
     likely = begin or list(read)

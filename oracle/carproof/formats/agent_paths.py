@@ -7,7 +7,7 @@ Semantics: `walks`.
 
 import re
 
-from carp_spec import Instance, Refusal, RobotId, Solution
+from carp_spec import Instance, RobotId, Solution
 from carproof.formats.adapter import Adapter
 from carproof.formats.walks import Cell, Walk, solution_of_walks, tick_by_tick, walks_of_solution
 from carproof.input_rules import Code
@@ -27,62 +27,47 @@ RIGHT_PATHS = Code(
 
 def _pairs(text: str, robots: int, file: str) -> dict[int, list[Cell]]:
     """The pairs of numbers of each agent."""
-
-    def refuse(number: int, message: str) -> Refusal:
-        return Refusal("document", f"{file}:{number}", RIGHT_PATHS.id, message)
-
     agents: dict[int, list[Cell]] = {}
     for number, line in enumerate(text.split("\n"), start=1):
-        packed = re.sub(r"[ \t\r]", "", line)
+        packed, where = re.sub(r"[ \t\r]", "", line), f"{file}:{number}"
         if not packed:
             continue
         parts = _LINE.fullmatch(packed)
         if parts is None:
-            raise refuse(number, "the line must be like Agent 0: (1,2)->(1,3)-> with numbers of at most nine digits")
+            message = "the line must be like Agent 0: (1,2)->(1,3)-> with numbers of at most nine digits"
+            raise RIGHT_PATHS.refuse(where, message)
         agent = int(parts[1])
         if agent >= robots:
-            raise refuse(number, f"the agent must be one of {robots}, counted from 0, and is {agent}")
+            raise RIGHT_PATHS.refuse(where, f"the agent must be one of {robots}, counted from 0, and is {agent}")
         if agent in agents:
-            raise refuse(number, f"agent {agent} must have one line, and has a second")
+            raise RIGHT_PATHS.refuse(where, f"agent {agent} must have one line, and has a second")
         agents[agent] = [(int(one), int(two)) for one, two in _CELL.findall(parts[2])]
     return agents
 
 
-def _read(text: str, instance: Instance, file: str, *, row_first: bool) -> Solution:
-    walks: dict[RobotId, Walk] = {}
-    for agent, pairs in _pairs(text, len(instance.robots), file).items():
-        cells = [(two, one) if row_first else (one, two) for one, two in pairs]
-        walks[instance.robots[agent].id] = [(cell, tick) for tick, cell in enumerate(cells)]
-    return solution_of_walks(instance, walks)
+def _adapter(name: str, description: str, *, row_first: bool) -> Adapter:
+    def read(text: str, instance: Instance, file: str) -> Solution:
+        walks: dict[RobotId, Walk] = {}
+        for agent, pairs in _pairs(text, len(instance.robots), file).items():
+            cells = [(two, one) if row_first else (one, two) for one, two in pairs]
+            walks[instance.robots[agent].id] = [(cell, tick) for tick, cell in enumerate(cells)]
+        return solution_of_walks(instance, walks)
+
+    def write(instance: Instance, solution: Solution) -> str:
+        cells = tick_by_tick(walks_of_solution(instance, solution, partial=True))
+        lines = []
+        for agent, robot in enumerate(instance.robot):
+            if robot in cells:
+                pairs = [(y, x) if row_first else (x, y) for x, y in cells[robot]]
+                lines.append(f"Agent {agent}: " + "".join(f"({one},{two})->" for one, two in pairs) + "\n")
+        return "".join(lines)
+
+    return Adapter(name, description, lambda text: _LOOKS.match(text) is not None, read, write, "Agent ")
 
 
-def _write(instance: Instance, solution: Solution, *, row_first: bool) -> str:
-    cells = tick_by_tick(walks_of_solution(instance, solution, partial=True))
-    lines = []
-    for agent, robot in enumerate(instance.robot):
-        if robot in cells:
-            pairs = [(y, x) if row_first else (x, y) for x, y in cells[robot]]
-            lines.append(f"Agent {agent}: " + "".join(f"({one},{two})->" for one, two in pairs) + "\n")
-    return "".join(lines)
-
-
-def _looks_like(text: str) -> bool:
-    return _LOOKS.match(text) is not None
-
-
-ROW_COLUMN = Adapter(
+ROW_COLUMN = _adapter(
     "paths-row-column",
     "a line Agent 0: (row,column)->(row,column)-> for each agent, as EECBS, PBS and MAPF-LNS write it",
-    _looks_like,
-    lambda text, instance, file: _read(text, instance, file, row_first=True),
-    lambda instance, solution: _write(instance, solution, row_first=True),
-    "Agent ",
+    row_first=True,
 )
-X_Y = Adapter(
-    "paths-x-y",
-    "the same with (x,y)",
-    _looks_like,
-    lambda text, instance, file: _read(text, instance, file, row_first=False),
-    lambda instance, solution: _write(instance, solution, row_first=False),
-    "Agent ",
-)
+X_Y = _adapter("paths-x-y", "the same with (x,y)", row_first=False)

@@ -4,11 +4,13 @@ The files do not have the ids of resources and robots; cells identify resources,
 lengths, which are for octile moves, are written as 0.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
-from carp_spec import Instance, Refusal, ResourceId
+from carp_spec import Instance, Refusal
 from carp_spec.inputs.values import require_instance
-from carproof.formats.movingai import CLASSICAL, GridMap
+from carproof.formats.movingai import CLASSICAL
+from carproof.formats.walks import cell_of
 from carproof.generate.options import size_is_bounded
 
 MAP_NAME = "instance.map"
@@ -45,11 +47,7 @@ def _is_grid(instance: Instance) -> bool:
     cells = {(x, y) for x, y in places if x >= 0 and y >= 0}
     if len(cells) < len(graph.resources) or not size_is_bounded(*_size(cells)):
         return False
-    moves = {
-        (_cell(instance, source), _cell(instance, target))
-        for source in graph.index
-        for target in graph.successors[source]
-    }
+    moves = {(cell_of(instance, source), cell_of(instance, target)) for source, target in graph.moves}
     beside = {((x, y), other) for x, y in cells for other in ((x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1))}
     return moves == {(cell, other) for cell, other in beside if other in cells}
 
@@ -59,30 +57,22 @@ def _size(cells: set[tuple[int, int]]) -> tuple[int, int]:
     return (max((x for x, _ in cells), default=-1) + 1, max((y for _, y in cells), default=-1) + 1)
 
 
-def _cell(instance: Instance, resource: ResourceId) -> tuple[int, int]:
-    place = instance.graph.resource[resource]
-    return (place.x or 0, place.y or 0)
-
-
 def write_movingai(instance: Instance) -> MovingAIFiles:
     """Write a classical instance; raises `Refusal` for another, which the files cannot express."""
     require_instance(instance)
     if not is_classical(instance):
         raise Refusal("option", "$", CLASSICAL.id, "a map and a scenario cannot express it: it must be classical")
-    cells = {_cell(instance, id) for id in instance.graph.index}
+    cells = {cell_of(instance, id) for id in instance.graph.index}
     width, height = _size(cells)
-    rows = tuple("".join("." if (x, y) in cells else "@" for x in range(width)) for y in range(height))
-    return MovingAIFiles(_map_file(GridMap(width, height, rows)), _scenario_file(instance, width, height))
-
-
-def _map_file(grid: GridMap) -> bytes:
-    lines = ["type octile", f"height {grid.height}", f"width {grid.width}", "map", *grid.rows]
-    return ("\n".join(lines) + "\n").encode()
-
-
-def _scenario_file(instance: Instance, width: int, height: int) -> bytes:
-    lines = ["version 1"]
+    rows = ["".join("." if (x, y) in cells else "@" for x in range(width)) for y in range(height)]
+    agents = []
     for robot in instance.robots:
-        ends = (*_cell(instance, robot.start), *_cell(instance, robot.goal))
-        lines.append("\t".join(map(str, (0, MAP_NAME, width, height, *ends, 0))))
-    return ("\n".join(lines) + "\n").encode()
+        ends = (*cell_of(instance, robot.start), *cell_of(instance, robot.goal))
+        agents.append("\t".join(map(str, (0, MAP_NAME, width, height, *ends, 0))))
+    return MovingAIFiles(
+        _file(["type octile", f"height {height}", f"width {width}", "map", *rows]), _file(["version 1", *agents])
+    )
+
+
+def _file(lines: Iterable[str]) -> bytes:
+    return "".join(f"{line}\n" for line in lines).encode()

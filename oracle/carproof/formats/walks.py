@@ -74,21 +74,20 @@ def solution_of_walks(instance: Instance, walks: Mapping[RobotId, Walk]) -> Solu
     """The solution in which robots make these walks; a robot without a walk is unplanned."""
     require_walks(instance)
     resources = {(each.x, each.y): each.id for each in instance.graph.resources}
-    plans = tuple(_plan(id, walks[id], resources) for id in instance.robot if id in walks)
+    plans = tuple(Plan(id, _visits(walks[id], resources)) for id in instance.robot if id in walks)
     unplanned = tuple(id for id in instance.robot if id not in walks)
     return Solution(plans, tuple(plan.robot for plan in plans), unplanned)
 
 
-def _plan(robot: RobotId, walk: Walk, resources: Mapping[tuple[int | None, int | None], ResourceId]) -> Plan:
+def _visits(walk: Walk, resources: Mapping[tuple[int | None, int | None], ResourceId]) -> tuple[Visit, ...]:
     entries = [walk[at] for at in range(len(walk)) if at == 0 or walk[at][0] != walk[at - 1][0]]
+    return visits_of([(resources.get(cell, cell_id(*cell)), tick) for cell, tick in entries])
+
+
+def visits_of(entries: Sequence[tuple[ResourceId | None, int]]) -> tuple[Visit, ...]:
+    """The visits of a robot that enters these resources at these ticks, and none from a tick on without a resource."""
     ends: list[int | None] = [*(tick for _, tick in entries[1:]), None]
-    return Plan(
-        robot,
-        tuple(
-            Visit(resources.get(cell, cell_id(*cell)), enter, leave)
-            for (cell, enter), leave in zip(entries, ends, strict=True)
-        ),
-    )
+    return tuple(Visit(at, tick, end) for (at, tick), end in zip(entries, ends, strict=True) if at is not None)
 
 
 def walks_of_solution(instance: Instance, solution: Solution, *, partial: bool) -> Mapping[RobotId, Walk]:
@@ -100,12 +99,15 @@ def walks_of_solution(instance: Instance, solution: Solution, *, partial: bool) 
         raise Refusal("document", "SOLUTION", solution_has_walks.id, f"the format cannot hold it: {what}")
     plans = {plan.robot: plan for plan in solution.plans}
     return {
-        id: [(_cell(instance, each), each.enter) for each in plans[id].visits] for id in instance.robot if id in plans
+        id: [(cell_of(instance, each.resource), each.enter) for each in plans[id].visits]
+        for id in instance.robot
+        if id in plans
     }
 
 
-def _cell(instance: Instance, visit: Visit) -> Cell:
-    resource = instance.graph.resource[visit.resource]
+def cell_of(instance: Instance, id: ResourceId) -> Cell:
+    """The position of a resource that has one."""
+    resource = instance.graph.resource[id]
     return (resource.x or 0, resource.y or 0)
 
 

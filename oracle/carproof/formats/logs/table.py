@@ -8,10 +8,10 @@ import csv
 import re
 from io import StringIO
 
-from carp_spec import Instance, Plan, ResourceId, RobotId, Visit
+from carp_spec import Instance, Plan, ResourceId, RobotId
 from carp_spec.execution.traces import Trace
 from carproof.formats.logs.cells import RIGHT_LOG
-from carproof.formats.walks import require_bounded
+from carproof.formats.walks import require_bounded, visits_of
 
 COLUMNS = ("robot", "tick", "resource")
 
@@ -44,9 +44,4 @@ def read(data: bytes, instance: Instance, file: str) -> Trace:
         at = resources.get(resource.strip(), resource.strip()) if resource.strip() else None
         if not done or done[-1][0] != at:
             done.append((at, int(tick)))
-    return Trace(now, tuple(Plan(robot, _visits(entries)) for robot, entries in visits.items()))
-
-
-def _visits(entries: list[tuple[ResourceId | None, int]]) -> tuple[Visit, ...]:
-    ends: list[int | None] = [*(tick for _, tick in entries[1:]), None]
-    return tuple(Visit(at, tick, end) for (at, tick), end in zip(entries, ends, strict=True) if at is not None)
+    return Trace(now, tuple(Plan(robot, visits_of(entries)) for robot, entries in visits.items()))

@@ -6,6 +6,7 @@ a service is an action of its node. The format has no times, so that waiting is 
 """
 
 import json
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
@@ -13,11 +14,11 @@ from fractions import Fraction
 from hashlib import sha256
 from typing import Any
 
-from carp_spec import Instance, Plan, Refusal, ResourceId, Solution
+from carp_spec import Instance, Plan, Refusal, ResourceId, RobotId, Solution
+from carp_spec.execution.dependencies import dependencies
 from carp_spec.inputs.values import require_solution
 from carp_spec.rule import DESIGN, rule
 from carproof.formats.plans.checks import names_of, require_lawful
-from carproof.formats.plans.release import released
 from carproof.formats.plans.services import stops_in
 from carproof.input_rules import Code
 from carproof.layouts.lanes import lanes_of
@@ -87,6 +88,24 @@ def write_orders(instance: Instance, solution: Solution, settings: OrderSettings
     writer = _Writer(instance, settings)
     orders = (writer.order(plan, now[plan.robot], then.get(plan.robot, 0)) for plan in solution.plans)
     return b"".join(json.dumps(each, ensure_ascii=False).encode() + b"\n" for each in orders if each is not None)
+
+
+def released(instance: Instance, solution: Solution, at: int) -> Mapping[RobotId, int]:
+    """How many visits of each plan may be released at a tick, if all robots have kept to their plans so far.
+
+    A visit may be released once every robot that is planned to leave its resource, or a group of it, before has left.
+    A robot that is not yet released has none. The solution is lawful.
+    """
+    entries = {(plan.robot, place): visit.enter for plan in solution.plans for place, visit in enumerate(plan.visits)}
+    waits: dict[RobotId, list[int]] = defaultdict(list)
+    for each in dependencies(instance, solution.plans):
+        if each.kind == "order" and entries[each.before] + each.ticks > at:
+            robot, place = each.after
+            waits[robot].append(place)
+    return {
+        plan.robot: 0 if instance.robot[plan.robot].release > at else min(waits[plan.robot], default=len(plan.visits))
+        for plan in solution.plans
+    }
 
 
 class _Writer:
