@@ -1,7 +1,6 @@
-// As much of JSON as the protocol needs. Numbers keep their text, so that an id comes back as it was.
+// As much of JSON as the protocol needs. Numbers and strings stay as they are written: an id comes back as it was.
 #pragma once
 #include <cctype>
-#include <cstdio>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,7 +12,7 @@ enum class Kind { null, boolean, number, string, array, object };
 
 struct Value {
     Kind kind = Kind::null;
-    std::string text;  // of a number or a boolean as it is written, of a string decoded
+    std::string text;  // of a number or a boolean as it is written, of a string what is written between its quotes
     std::vector<Value> items;
     std::vector<std::pair<std::string, Value>> fields;
 
@@ -116,78 +115,22 @@ class Reader {
     }
 
     std::string read_string() {
-        std::string result;
         expect("\"");
+        const std::size_t begin = at_;
         while (peek() != '"') {
+            at_ += peek() == '\\' ? 2 : 1;
             if (at_ >= text_.size()) throw std::runtime_error("a string has no end");
-            char c = text_[at_++];
-            if (c == '\\')
-                read_escape(result);
-            else
-                result += c;
         }
-        expect("\"");
-        return result;
-    }
-
-    void read_escape(std::string& result) {
-        char c = text_[at_++];
-        static const std::string names = "bfnrt", meanings = "\b\f\n\r\t";
-        if (c == 'u') {
-            unsigned long point = read_hex();
-            if (point >= 0xD800 && point < 0xDC00) {
-                expect("\\u");
-                point = 0x10000 + ((point - 0xD800) << 10) + (read_hex() - 0xDC00);
-            }
-            append_utf8(result, point);
-        } else if (auto position = names.find(c); position != std::string::npos) {
-            result += meanings[position];
-        } else {
-            result += c;
-        }
-    }
-
-    unsigned long read_hex() {
-        unsigned long point = std::stoul(text_.substr(at_, 4), nullptr, 16);
-        at_ += 4;
-        return point;
-    }
-
-    static void append_utf8(std::string& out, unsigned long point) {
-        if (point < 0x80) {
-            out += static_cast<char>(point);
-            return;
-        }
-        int more = point < 0x800 ? 1 : point < 0x10000 ? 2 : 3;
-        static const unsigned char heads[] = {0, 0xC0, 0xE0, 0xF0};
-        out += static_cast<char>(heads[more] | (point >> (6 * more)));
-        while (more-- > 0) out += static_cast<char>(0x80 | ((point >> (6 * more)) & 0x3F));
+        return text_.substr(begin, at_++ - begin);
     }
 };
-
-inline void write_string(const std::string& text, std::string& out) {
-    out += '"';
-    for (char c : text) {
-        if (c == '"' || c == '\\') {
-            out += '\\';
-            out += c;
-        } else if (static_cast<unsigned char>(c) < 0x20) {
-            char escape[8];
-            std::snprintf(escape, sizeof escape, "\\u%04x", static_cast<unsigned>(c));
-            out += escape;
-        } else {
-            out += c;
-        }
-    }
-    out += '"';
-}
 
 inline void write(const Value& value, std::string& out) {
     switch (value.kind) {
         case Kind::null: out += "null"; break;
         case Kind::boolean:
         case Kind::number: out += value.text; break;
-        case Kind::string: write_string(value.text, out); break;
+        case Kind::string: out += '"' + value.text + '"'; break;
         case Kind::array:
             out += '[';
             for (std::size_t i = 0; i < value.items.size(); ++i) {
@@ -200,8 +143,7 @@ inline void write(const Value& value, std::string& out) {
             out += '{';
             for (std::size_t i = 0; i < value.fields.size(); ++i) {
                 if (i > 0) out += ',';
-                write_string(value.fields[i].first, out);
-                out += ':';
+                out += '"' + value.fields[i].first + "\":";
                 write(value.fields[i].second, out);
             }
             out += '}';
