@@ -2,12 +2,9 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeAlias
 
 from carp_spec import Instance, Solution
 
-Read: TypeAlias = Callable[[str, Instance, str], Solution]
-Write: TypeAlias = Callable[[Instance, Solution], str]
 LONGEST_HEAD = 10_000
 """The characters of a line that names columns."""
 
@@ -23,8 +20,8 @@ class Adapter:
     name: str
     description: str
     looks_like: Callable[[str], bool]
-    read: Read
-    write: Write
+    read: Callable[[str, Instance, str], Solution]
+    write: Callable[[Instance, Solution], str]
     agent: str | None = None
 
 

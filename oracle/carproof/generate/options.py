@@ -24,12 +24,6 @@ BOUNDS: Mapping[str, tuple[int, int]] = {
     "release": (0, LARGEST),
     "service": (0, LARGEST),
 }
-CHOICES: Mapping[str, tuple[str, ...]] = {
-    "distinct": get_args(Distinct),
-    "orders": get_args(Orders),
-    "start_at": get_args(Side),
-    "after_goal": ("vanish", "park"),
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,17 +69,17 @@ def options_are_right(options: Any) -> Iterator[tuple[str, str]]:  # noqa: ANN40
         value = getattr(options, each.name)
         is_range = isinstance(value, Range)
         if is_range == (each.type is Range):
-            message = _wrong(each.name, value)
+            message = _wrong(each.name, value, get_args(each.type))
         else:
             message = f"it must be {'a whole number' if is_range else 'a Range'}, not {value!r}"
         if message is not None:
             yield f"$.{each.name}", message
 
 
-def _wrong(name: str, value: object) -> str | None:
-    if name in CHOICES:
-        is_word = isinstance(value, str) and value in CHOICES[name]
-        return None if is_word else f"it must be one of {', '.join(CHOICES[name])}, not {value!r}"
+def _wrong(name: str, value: object, words: tuple[str, ...]) -> str | None:
+    if words:
+        is_word = isinstance(value, str) and value in words
+        return None if is_word else f"it must be one of {', '.join(words)}, not {value!r}"
     least, most = BOUNDS.get(name, (1, LARGEST))
     ends = [value.low, value.high] if isinstance(value, Range) else [value]
     if not all(is_whole(end) and least <= end <= most for end in ends):

@@ -65,19 +65,16 @@ def map_picture(graph: ResourceGraph, scene: Scene) -> Element:
         path(ground, "edge thin" if scene.computed else "edge", (line([one, two]) for one, two, back in ways if back))
     draw_outlines(ground, scene)
     path(ground, "one-way", (line(ends) for ends in one_way))
-    path(ground, "lane", (line(place.way) for place, _ in located if place.way and place.capacity == "1"))
-    path(ground, "lane roomy", (line(place.way) for place, _ in located if place.way and place.capacity != "1"))
-    path(ground, square, (cell(at) for place, at in located if not place.way and place.capacity == "1"))
-    path(ground, "cell roomy", (cell(at) for place, at in located if not place.way and place.capacity != "1"))
+    lanes = [(place.way, place.capacity == "1") for place in scene.places if place.way]
+    cells = [(at, place.capacity == "1") for place, at in located if not place.way]
+    path(ground, "lane", (line(ends) for ends, is_for_one in lanes if is_for_one))
+    path(ground, "lane roomy", (line(ends) for ends, is_for_one in lanes if not is_for_one))
+    path(ground, square, (cell(at) for at, is_for_one in cells if is_for_one))
+    path(ground, "cell roomy", (cell(at) for at, is_for_one in cells if not is_for_one))
     path(ground, "one-way head", (arrow_head(*ends) for ends in one_way))
-    path(ground, "lane head", (head(end, way(begin, end), HEAD) for begin, end in ways_of(scene)))
+    path(ground, "lane head", (head(end, way(begin, end), HEAD) for (begin, end), _ in lanes))
     write_names(ground, located, is_named=scene.named)
     return picture
-
-
-def ways_of(scene: Scene) -> Iterator[tuple[Point, Point]]:
-    """Where lanes begin and end."""
-    yield from (place.way for place in scene.places if place.way)
 
 
 def way(one: Point, other: Point) -> Point:

@@ -10,12 +10,11 @@ def stops_in(instance: Instance, plan: Plan) -> Mapping[int, int]:
 
     Every stop but the last is served as soon as a visit allows it, the last one in the last visit.
     """
-    stops = instance.robot[plan.robot].stops
+    *stops, _ = instance.robot[plan.robot].stops
     serves: dict[int, int] = {}
     for place, visit in enumerate(plan.visits[:-1]):
-        served = len(serves)
-        if stops_served(stops[:-1][served : served + 1], (visit,)):
-            serves[place] = served
-    if plan.visits and len(serves) == len(stops) - 1:
-        serves[len(plan.visits) - 1] = len(stops) - 1
+        if stops_served(stops[len(serves) :][:1], (visit,)):
+            serves[place] = len(serves)
+    if plan.visits and len(serves) == len(stops):
+        serves[len(plan.visits) - 1] = len(stops)
     return serves

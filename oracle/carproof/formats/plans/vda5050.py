@@ -14,7 +14,7 @@ from fractions import Fraction
 from hashlib import sha256
 from typing import Any
 
-from carp_spec import Instance, Plan, Refusal, ResourceId, RobotId, Solution
+from carp_spec import Instance, Plan, Refusal, RobotId, Solution
 from carp_spec.execution.dependencies import dependencies
 from carp_spec.inputs.values import require_solution
 from carp_spec.rule import DESIGN, rule
@@ -148,21 +148,14 @@ class _Writer:
         return f"{self.robots[plan.robot]}-{sha256(way.encode()).hexdigest()[:16]}"
 
     def _nodes(self, plan: Plan, places: Sequence[int], base: int) -> Iterator[Element]:
-        serves = stops_in(self.instance, plan)
+        serves, metres = stops_in(self.instance, plan), self.settings.unit / 1000
         for count, place in enumerate(places):
-            id = plan.visits[place].resource
-            node: Element = {"nodeId": self.names[id], "sequenceId": 2 * count, "released": count < base}
-            position = self._position(id)
-            if position is not None:
-                node["nodePosition"] = position
-            node["actions"] = [*self._actions(plan, place, serves)]
-            yield node
-
-    def _position(self, id: ResourceId) -> Element | None:
-        resource, metres = self.instance.graph.resource[id], self.settings.unit / 1000
-        if resource.x is None or resource.y is None:
-            return None
-        return {"x": float(resource.x * metres), "y": float(resource.y * metres), "mapId": self.settings.map_id}
+            at = self.instance.graph.resource[plan.visits[place].resource]
+            node: Element = {"nodeId": self.names[at.id], "sequenceId": 2 * count, "released": count < base}
+            if at.x is not None and at.y is not None:
+                x, y = float(at.x * metres), float(at.y * metres)
+                node["nodePosition"] = {"x": x, "y": y, "mapId": self.settings.map_id}
+            yield {**node, "actions": [*self._actions(plan, place, serves)]}
 
     def _actions(self, plan: Plan, place: int, serves: Mapping[int, int]) -> Iterator[Element]:
         """The service of the stop that the visit serves, if it takes time."""
