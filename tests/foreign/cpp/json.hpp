@@ -8,11 +8,11 @@
 
 namespace json {
 
-enum class Kind { null, boolean, number, string, array, object };
+enum class Kind { plain, string, array, object };  // a number, true, false and null are plain
 
 struct Value {
-    Kind kind = Kind::null;
-    std::string text;  // of a number or a boolean as it is written, of a string what is written between its quotes
+    Kind kind = Kind::plain;
+    std::string text = "null";  // as it is written, of a string between its quotes
     std::vector<Value> items;
     std::vector<std::pair<std::string, Value>> fields;
 
@@ -26,13 +26,14 @@ struct Value {
         throw std::runtime_error("the field " + name + " must be there");
     }
     long long integer() const {
-        if (kind != Kind::number) throw std::runtime_error("a whole number is needed");
+        if (kind != Kind::plain || text.find_first_not_of("-0123456789") != std::string::npos)
+            throw std::runtime_error("a whole number is needed");
         return std::stoll(text);
     }
     bool operator==(const Value& other) const { return kind == other.kind && text == other.text; }
 };
 
-inline Value number(long long value) { return {Kind::number, std::to_string(value), {}, {}}; }
+inline Value number(long long value) { return {Kind::plain, std::to_string(value), {}, {}}; }
 inline Value string(std::string text) { return {Kind::string, std::move(text), {}, {}}; }
 inline Value array(std::vector<Value> items) { return {Kind::array, "", std::move(items), {}}; }
 inline Value object(std::vector<std::pair<std::string, Value>> fields) {
@@ -66,52 +67,44 @@ class Reader {
     Value read(int depth) {
         if (depth > 200) throw std::runtime_error("this is nested too deep");
         skip_space();
-        switch (peek()) {
-            case '{': return read_object(depth);
-            case '[': return read_array(depth);
-            case '"': return string(read_string());
-            case 't': expect("true"); return {Kind::boolean, "true", {}, {}};
-            case 'f': expect("false"); return {Kind::boolean, "false", {}, {}};
-            case 'n': expect("null"); return {};
-            default: return read_number();
+        Value value;
+        if (peek() == '[') {
+            value.kind = Kind::array;
+            read_entries(']', [&] { value.items.push_back(read(depth + 1)); });
+        } else if (peek() == '{') {
+            value.kind = Kind::object;
+            read_entries('}', [&] {
+                skip_space();
+                std::string name = read_string();
+                skip_space();
+                expect(":");
+                value.fields.emplace_back(std::move(name), read(depth + 1));
+            });
+        } else if (peek() == '"') {
+            value = string(read_string());
+        } else {
+            value.text = read_plain();
         }
+        return value;
     }
 
-    Value read_number() {
+    template <typename Read>
+    void read_entries(char end, Read read_entry) {
+        ++at_;
+        skip_space();
+        while (peek() != end) {
+            read_entry();
+            skip_space();
+            if (peek() != end) expect(",");
+        }
+        ++at_;
+    }
+
+    std::string read_plain() {
         std::size_t begin = at_;
         while (std::isalnum(static_cast<unsigned char>(peek())) || peek() == '-' || peek() == '+' || peek() == '.') ++at_;
         if (begin == at_) throw std::runtime_error("this is no JSON");
-        return {Kind::number, text_.substr(begin, at_ - begin), {}, {}};
-    }
-
-    Value read_array(int depth) {
-        Value value{Kind::array, "", {}, {}};
-        expect("[");
-        skip_space();
-        while (peek() != ']') {
-            value.items.push_back(read(depth + 1));
-            skip_space();
-            if (peek() != ']') expect(",");
-        }
-        expect("]");
-        return value;
-    }
-
-    Value read_object(int depth) {
-        Value value{Kind::object, "", {}, {}};
-        expect("{");
-        skip_space();
-        while (peek() != '}') {
-            skip_space();
-            std::string name = read_string();
-            skip_space();
-            expect(":");
-            value.fields.emplace_back(std::move(name), read(depth + 1));
-            skip_space();
-            if (peek() != '}') expect(",");
-        }
-        expect("}");
-        return value;
+        return text_.substr(begin, at_ - begin);
     }
 
     std::string read_string() {
@@ -126,25 +119,25 @@ class Reader {
 };
 
 inline void write(const Value& value, std::string& out) {
+    const char* between = "";
     switch (value.kind) {
-        case Kind::null: out += "null"; break;
-        case Kind::boolean:
-        case Kind::number: out += value.text; break;
+        case Kind::plain: out += value.text; break;
         case Kind::string: out += '"' + value.text + '"'; break;
         case Kind::array:
             out += '[';
-            for (std::size_t i = 0; i < value.items.size(); ++i) {
-                if (i > 0) out += ',';
-                write(value.items[i], out);
+            for (const Value& item : value.items) {
+                out += between;
+                write(item, out);
+                between = ",";
             }
             out += ']';
             break;
         case Kind::object:
             out += '{';
-            for (std::size_t i = 0; i < value.fields.size(); ++i) {
-                if (i > 0) out += ',';
-                out += '"' + value.fields[i].first + "\":";
-                write(value.fields[i].second, out);
+            for (const auto& [name, field] : value.fields) {
+                out += between + ('"' + name + "\":");
+                write(field, out);
+                between = ",";
             }
             out += '}';
             break;

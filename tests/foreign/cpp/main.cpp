@@ -57,7 +57,7 @@ carp::Plan read_visits(const Named& named, const Value& visits) {
     for (const Value& visit : visits.items) {
         const Value& leave = visit.items.at(2);
         plan.push_back({index_of(named.resources, visit.items.at(0)), visit.items.at(1).integer(),
-                        leave.kind == json::Kind::null ? carp::forever : leave.integer()});
+                        leave.text == "null" ? carp::forever : leave.integer()});
     }
     return plan;
 }
