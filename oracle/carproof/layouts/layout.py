@@ -111,7 +111,9 @@ class Layout:
         """Add a point, at a place in mm."""
         if id in self.points:
             raise at.refuse(f"the point {id!r} must be given once")
-        x, y = (None, None) if place is None else (self._rounded(at, place[0]), self._rounded(at, place[1]))
+        if place is not None and max(map(abs, place)) > LARGEST:
+            raise at.refuse(f"a position must be between -{LARGEST} and {LARGEST} mm")
+        x, y = (None, None) if place is None else map(round, place)
         self.points[id] = Point(id, x, y, stands)
 
     def lane(  # noqa: PLR0913 - one for each fact of a lane
@@ -181,12 +183,6 @@ class Layout:
             raise at.refuse(f"the vehicle {id!r} must be given once")
         self.require_points(at, start, *([] if goal is None else [goal]))
         self.vehicles[id] = Vehicle(id, start, goal)
-
-    @staticmethod
-    def _rounded(at: Tree, value: Fraction) -> int:
-        if abs(value) > LARGEST:
-            raise at.refuse(f"a position must be between -{LARGEST} and {LARGEST} mm")
-        return round(value)
 
     def distance(self, source: str, target: str) -> int | None:
         """The distance of two points in mm, rounded up; `None` where they have no positions."""

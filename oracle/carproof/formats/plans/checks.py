@@ -1,13 +1,10 @@
 """What is asked of plans that are written: they are lawful, and ids differ as text (not 1 and "1")."""
 
 from collections.abc import Iterable, Mapping
-from typing import TypeVar
 
-from carp_spec import Instance, Refusal, Solution, judge
+from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, judge
 from carproof.formats.walks import solution_has_walks
 from carproof.input_rules import Code
-
-Id = TypeVar("Id", bound=str | int)
 
 
 def require_lawful(instance: Instance, solution: Solution) -> None:
@@ -17,13 +14,15 @@ def require_lawful(instance: Instance, solution: Solution) -> None:
         raise Refusal("document", "SOLUTION", solution_has_walks.id, message)
 
 
-def names_of(ids: Iterable[Id], what: str, code: Code) -> Mapping[Id, str]:
-    """The ids with their texts; raises `Refusal` where two print alike."""
-    names: dict[Id, str] = {}
-    taken: set[str] = set()
+def ids_by_text(instance: Instance, code: Code) -> tuple[Mapping[str, RobotId], Mapping[str, ResourceId]]:
+    """The ids of robots and of resources by their texts; raises `Refusal` where two print alike."""
+    return _by_text(instance.robot, "robots", code), _by_text(instance.graph.index, "resources", code)
+
+
+def _by_text(ids: Iterable[str | int], what: str, code: Code) -> Mapping[str, str | int]:
+    found: dict[str, str | int] = {}
     for id in ids:
-        if str(id) in taken:
+        if str(id) in found:
             raise code.refuse("INSTANCE", f"two {what} must not both print as {id}")
-        taken.add(str(id))
-        names[id] = str(id)
-    return names
+        found[str(id)] = id
+    return found

@@ -10,10 +10,10 @@ import re
 from collections.abc import Mapping
 from io import StringIO
 
-from carp_spec import Instance, Plan, ResourceId, RobotId, Solution, Visit
+from carp_spec import Instance, Plan, RobotId, Solution, Visit
 from carp_spec.rule import DESIGN
 from carproof.formats.adapter import Adapter, first_line
-from carproof.formats.plans.checks import names_of, require_lawful
+from carproof.formats.plans.checks import ids_by_text, require_lawful
 from carproof.formats.plans.services import stops_in
 from carproof.formats.walks import require_bounded
 from carproof.input_rules import Code
@@ -31,10 +31,7 @@ RIGHT_TABLE = Code(
 
 def read(text: str, instance: Instance, file: str) -> Solution:
     """Read a table; ids that the instance does not have are left to the rules of plans."""
-    robots: dict[str, RobotId] = {name: id for id, name in names_of(instance.robot, "robots", RIGHT_TABLE).items()}
-    resources: dict[str, ResourceId] = {
-        name: id for id, name in names_of(instance.graph.index, "resources", RIGHT_TABLE).items()
-    }
+    robots, resources = ids_by_text(instance, RIGHT_TABLE)
     rows = csv.DictReader(StringIO(text.removeprefix("\ufeff")))
     if not {*COLUMNS} <= {*(rows.fieldnames or ())}:
         raise RIGHT_TABLE.refuse(f"{file}:1", f"the line must name the columns {', '.join(COLUMNS)}")
@@ -61,8 +58,7 @@ def _named(text: str, ids: Mapping[str, RobotId]) -> RobotId:
 def write(instance: Instance, solution: Solution) -> str:
     """Write a table; raises `Refusal` if the solution breaks a rule or ids print alike."""
     require_lawful(instance, solution)
-    robots = names_of(instance.robot, "robots", RIGHT_TABLE)
-    resources = names_of(instance.graph.index, "resources", RIGHT_TABLE)
+    ids_by_text(instance, RIGHT_TABLE)  # which refuses two that print alike
     plans = {plan.robot: plan for plan in solution.plans}
     text = StringIO()
     rows = csv.writer(text, lineterminator="\n")
@@ -72,8 +68,7 @@ def write(instance: Instance, solution: Solution) -> str:
         for place, visit in enumerate(plans[id].visits):
             leave = "" if visit.leave is None else visit.leave
             stop = serves[place] + 1 if place in serves else ""
-            name = resources.get(visit.resource, visit.resource)
-            rows.writerow((robots[id], name, visit.enter, leave, stop))
+            rows.writerow((id, visit.resource, visit.enter, leave, stop))
     return text.getvalue()
 
 

@@ -18,7 +18,7 @@ from carp_spec import Instance, Plan, Refusal, RobotId, Solution
 from carp_spec.execution.dependencies import dependencies
 from carp_spec.inputs.values import require_solution
 from carp_spec.rule import DESIGN, rule
-from carproof.formats.plans.checks import names_of, require_lawful
+from carproof.formats.plans.checks import ids_by_text, require_lawful
 from carproof.formats.plans.services import stops_in
 from carproof.input_rules import Code
 from carproof.layouts.lanes import lanes_of
@@ -114,8 +114,7 @@ class _Writer:
     def __init__(self, instance: Instance, settings: OrderSettings) -> None:
         self.instance = instance
         self.settings = settings
-        self.robots = names_of(instance.robot, "robots", RIGHT_NAMES)
-        self.names = names_of(instance.graph.index, "resources", RIGHT_NAMES)
+        ids_by_text(instance, RIGHT_NAMES)  # which refuses two that print alike
         self.lanes = lanes_of(instance)
 
     def order(self, plan: Plan, now: int, then: int) -> Element | None:
@@ -134,7 +133,7 @@ class _Writer:
             "timestamp": sent.strftime("%Y-%m-%dT%H:%M:%S.") + f"{sent.microsecond // 1000:03}Z",
             "version": settings.version,
             "manufacturer": settings.manufacturer,
-            "serialNumber": self.robots[plan.robot],
+            "serialNumber": str(plan.robot),
             "orderId": self._order_id(plan),
             "orderUpdateId": settings.at if before else 0,
             "nodes": nodes[first:],
@@ -145,13 +144,13 @@ class _Writer:
         """The same for plans along the same resources."""
         stops = [[stop.resource, stop.service] for stop in self.instance.robot[plan.robot].stops]
         way = json.dumps([plan.robot, [visit.resource for visit in plan.visits], stops])
-        return f"{self.robots[plan.robot]}-{sha256(way.encode()).hexdigest()[:16]}"
+        return f"{plan.robot}-{sha256(way.encode()).hexdigest()[:16]}"
 
     def _nodes(self, plan: Plan, places: Sequence[int], base: int) -> Iterator[Element]:
         serves, metres = stops_in(self.instance, plan), self.settings.unit / 1000
         for count, place in enumerate(places):
             at = self.instance.graph.resource[plan.visits[place].resource]
-            node: Element = {"nodeId": self.names[at.id], "sequenceId": 2 * count, "released": count < base}
+            node: Element = {"nodeId": str(at.id), "sequenceId": 2 * count, "released": count < base}
             if at.x is not None and at.y is not None:
                 x, y = float(at.x * metres), float(at.y * metres)
                 node["nodePosition"] = {"x": x, "y": y, "mapId": self.settings.map_id}
@@ -176,7 +175,7 @@ class _Writer:
             lane = plan.visits[places[count] + 1].resource
             ends = (nodes[count]["nodeId"], nodes[count + 1]["nodeId"])
             edge: Element = {
-                "edgeId": self.names[lane] if lane in self.lanes else f"{ends[0]} -> {ends[1]}",
+                "edgeId": str(lane) if lane in self.lanes else f"{ends[0]} -> {ends[1]}",
                 "sequenceId": 2 * count + 1,
                 "released": nodes[count + 1]["released"],
             }
