@@ -1,6 +1,7 @@
 """The viewer's page in headless Chromium: it loads without errors, plays, and answers keys and clicks."""
 
 import json
+import re
 from collections.abc import Callable, Iterator
 from itertools import pairwise
 from pathlib import Path
@@ -71,22 +72,20 @@ def warehouse() -> Case:
     edges = tuple((f"{x},{y}", f"{x + 1},{y}") for y in range(30) for x in range(119))
     starts = [(x, y) for y in range(30) for x in range(15)]
     robots = tuple(Robot(f"r{at}", f"{x},{y}", f"{x + 100},{y}") for at, (x, y) in enumerate(starts))
-    plans = tuple(
+    instance = Instance(ResourceGraph(resources, edges), robots)
+    plans = [
         Plan(f"r{at}", tuple(Visit(f"{x + tick},{y}", tick, tick + 1) for tick in range(101)))
         for at, (x, y) in enumerate(starts)
-    )
-    return Instance(ResourceGraph(resources, edges), robots), Solution(plans, tuple(each.id for each in robots))
+    ]
+    return instance, Solution.of(instance, plans)
 
 
-def rotation() -> Case:
-    """Four robots on 2 x 2 cells; each enters the place of the next at tick 1."""
-    ring = ((0, 0), (1, 0), (1, 1), (0, 1))
-    resources = tuple(Resource(f"{x}{y}", x=x, y=y) for x, y in ring)
-    names = [each.id for each in resources] * 2
-    edges = tuple((names[at], names[at + 1]) for at in range(4))
-    robots = tuple(Robot(f"r{at}", names[at], names[at + 1]) for at in range(4))
-    plans = tuple(Plan(f"r{at}", (Visit(names[at], 0, 1), Visit(names[at + 1], 1, 2))) for at in range(4))
-    return Instance(ResourceGraph(resources, edges), robots), Solution(plans, tuple(each.id for each in robots))
+def moving_at_once(grid: Grid, *moves: tuple[str, str]) -> Case:
+    """A robot for each move, which it makes at tick 1."""
+    robots = tuple(Robot(f"r{at}", *ends) for at, ends in enumerate(moves, start=1))
+    instance = Instance(grid_instance(grid).graph, robots)
+    plans = [Plan(each.id, (Visit(each.start, 0, 1), Visit(each.goal, 1, 2))) for each in robots]
+    return instance, Solution.of(instance, plans)
 
 
 def wait_for(shown: Page, body: str) -> None:
@@ -147,8 +146,8 @@ def row_of_bays(count: int) -> Case:
 
 def placed(transform: str) -> tuple[float, ...]:
     """The place and the radius of a robot in a still."""
-    x, y, scale = transform.replace("translate(", "").replace("scale(", "").replace("e-2)", "").replace(")", "").split()
-    return float(x), float(y), float(scale) / ROBOT_RADIUS
+    x, y, hundredths, _ = map(int, re.findall(r"-?\d+", transform))
+    return x, y, hundredths / ROBOT_RADIUS
 
 
 def slider(shown: Page) -> int:
@@ -203,10 +202,7 @@ def test_a_planted_collision_is_counted_listed_and_marked_at_its_tick(collision:
 
 
 def test_both_resources_of_an_exchange_are_red_while_robots_pass_each_other(opened: Opener) -> None:
-    resources, edges = (Resource("a", x=0, y=0), Resource("b", x=1, y=0)), (("a", "b"),)
-    robots = (Robot("r1", "a", "b"), Robot("r2", "b", "a"))
-    plans = tuple(Plan(each.id, (Visit(each.start, 0, 1), Visit(each.goal, 1, 2))) for each in robots)
-    shown = opened(Instance(ResourceGraph(resources, edges), robots), Solution(plans, ("r1", "r2")))
+    shown = opened(*moving_at_once(Grid(2, 1), ("0,0", "1,0"), ("1,0", "0,0")))
 
     def red(time: float) -> object:
         shown.script(f"viewer.clock.set({time})")
@@ -307,7 +303,7 @@ def test_an_instance_alone_is_a_map_without_a_clock(opened: Opener, town: Case) 
 
 
 def test_robots_are_where_the_trace_says_and_rings_where_they_were_to_be(opened: Opener) -> None:
-    instance, solution = rotation()
+    instance, solution = moving_at_once(Grid(2, 2), *pairwise(["0,0", "1,0", "1,1", "0,1", "0,0"]))
     happened = Trace(1, tuple(Plan(plan.robot, (Visit(plan.visits[0].resource, 0, None),)) for plan in solution.plans))
     shown = opened(instance, solution, trace=happened)
     start = shown.robots()
