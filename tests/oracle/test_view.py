@@ -50,6 +50,8 @@ def test_the_scene_has_every_free_window(carproof: Run) -> None:
     scene = scene_of(drawn(carproof, CORRIDOR, solution({"r1": EAST_PLAN, "r2": [["b", 2, 4]]})))
     assert [place["windows"] for place in scene["places"][:2]] == [[[1, None]], [[0, 1], [4, None]]]
     assert (scene["first"], scene["last"]) == (0, 4)
+    forbidden = scene_of(drawn(carproof, {**CORRIDOR, "following": "forbidden"}, solution({"r2": [["b", 2, 4]]})))
+    assert forbidden["places"][1]["windows"] == [[0, 1], [5, None]], "a tick lies between robots"
 
 
 def test_ids_cannot_leave_their_text(carproof: Run) -> None:

@@ -183,7 +183,7 @@ def free_of(stage: Stage, id: ResourceId, groups: Mapping[int, Sequence[Occupati
     graph = stage.instance.graph
     own = [occupation for _, _, occupation in stage.planned.stays.get(id, [])]
     limits = [(groups.get(each, ()), graph.groups[each].capacity) for each in graph.groups_of.get(id, ())]
-    windows = free_windows([(own, graph.resource[id].capacity), *limits])
+    windows = free_windows([(own, graph.resource[id].capacity), *limits], stage.instance.gap)
     return tuple((window.start, window.end) for window in windows)
 
 
