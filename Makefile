@@ -162,30 +162,20 @@ coverage: install
 	    --cov --cov-config=tests/optimized/coverage.toml tests/optimized \
 	    -k "not paper_sized and not every_small and not compiling and not uncompiled and not bounds and not planted"
 
-# Break the specification and the reference in one place after the other, and list what no test noticed.
-# Works on a copy; `make mutation-carp_spec` for one package. tests/mutation/survivors.md explains what is left.
+# Break the code in one place after the other, each mutant in a process forked for it, and list what no test noticed:
+# of the checkers that call something proved, verified or conforming, of the specification and the reference, and of the
+# compiled planner's reuse, run uncompiled. `make mutation-carp_spec` for one package; tests/mutation/survivors.md
+# explains what is left.
 mutation: mutation-trusted mutation-carp_spec mutation-carp_reference mutation-carp_optimized
-
-# The compiled planner's reuse, run uncompiled, by a driver that forks for each mutant; then, by the same driver, the
-# checkers that call something proved, verified or conforming.
-mutation-carp_optimized: .venv/mutation
-	nice $(BIN)/python -m tests.mutation.planner
 
 mutation-trusted: .venv/mutation
 	nice $(BIN)/python -m tests.mutation.checkers
 
+mutation-carp_optimized: .venv/mutation
+	nice $(BIN)/python -m tests.mutation.planner
+
 mutation-%: .venv/mutation
-	rm -rf build/mutation/$* build/mutation/$*-original
-	mkdir -p build/mutation/$*
-	git ls-files -z | xargs -0 cp --parents --target-directory=build/mutation/$*
-	cp -r build/mutation/$* build/mutation/$*-original
-	cd build/mutation/$* && export ORIGINAL=$(CURDIR)/build/mutation/$*-original PATH=$(CURDIR)/$(BIN):$$PATH PYTHONPATH=spec:reference:verify \
-	    PYTHONDONTWRITEBYTECODE=1 HYPOTHESIS_PROFILE=mutation && \
-	cosmic-ray init tests/mutation/$*.toml mutants.sqlite && \
-	cr-filter-operators mutants.sqlite tests/mutation/$*.toml && \
-	cosmic-ray baseline tests/mutation/$*.toml && \
-	nice cosmic-ray exec tests/mutation/$*.toml mutants.sqlite && \
-	cr-report --surviving-only mutants.sqlite
+	nice $(BIN)/python -m tests.mutation.specified $*
 
 # Check the proofs of the kernel, print what each theorem rests on, and make build/kernel/carproof-kernel: Coq and OCaml.
 kernel:

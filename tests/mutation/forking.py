@@ -1,7 +1,7 @@
 """Mutants run in processes forked from one that has loaded everything, which saves starting it for each of them.
 
-`planner.py` and `checkers.py` have the checks. The check that noticed the last mutant is the first that the next one
-has to pass.
+`planner.py`, `checkers.py` and `specified.py` have the checks. The check that noticed the last mutant is the first that
+the next one has to pass.
 """
 
 import os
@@ -11,8 +11,12 @@ import struct
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from importlib.util import spec_from_loader
 from mmap import mmap
 from pathlib import Path
+from types import ModuleType
 
 from tests.mutation.mutants import Mutant
 
@@ -49,6 +53,21 @@ class Outcome:
     status: int
     case: Case
     work: int
+
+
+class Changed(MetaPathFinder, Loader):
+    """Loads a module from another source than its file."""
+
+    def __init__(self, name: str, path: Path, source: str) -> None:
+        self.name, self.path, self.source = name, path, source
+
+    def find_spec(self, name: str, path: object, target: object = None) -> ModuleSpec | None:
+        del path, target
+        return spec_from_loader(name, self) if name == self.name else None
+
+    def exec_module(self, module: ModuleType) -> None:
+        module.__file__ = str(self.path)
+        exec(compile(self.source, module.__file__, "exec"), module.__dict__)  # noqa: S102 - a mutant is to be run
 
 
 def run_mutants(
@@ -105,8 +124,11 @@ def outcome(load: Callable[[], None], cases: list[Case]) -> Outcome:
 
 
 def chosen(arguments: Sequence[str], known: Sequence[str]) -> Mapping[str, Sequence[int]]:
-    """The modules that are named, or all, with the lines that are named behind each, `module:89:91`, if any."""
-    named = {name: [int(line) for line in lines] for name, *lines in (each.split(":") for each in arguments)}
-    if unknown := named.keys() - set(known):
-        sys.exit(f"no such modules: {', '.join(sorted(unknown))}")
-    return named or {name: [] for name in known}
+    """The modules that are named, alone or by their package, with the lines behind each, `module:89:91`; or all."""
+    found: dict[str, Sequence[int]] = {}
+    for name, *lines in (each.split(":") for each in arguments):
+        within = [each for each in known if f"{each}.".startswith(f"{name}.")]
+        if not within:
+            sys.exit(f"no such module: {name}")
+        found |= {each: [int(line) for line in lines] for each in within}
+    return found or {name: [] for name in known}

@@ -15,13 +15,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from importlib import import_module
-from importlib.abc import Loader, MetaPathFinder
-from importlib.machinery import ModuleSpec
-from importlib.util import spec_from_loader
 from inspect import signature
 from itertools import product
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 os.environ["NUMBA_DISABLE_JIT"] = "1"  # numba looks when it is loaded
@@ -30,7 +26,7 @@ os.environ["HYPOTHESIS_PROFILE"] = "mutation"
 import numpy as np
 import pytest
 import tests.conftest  # noqa: F401 - the profile
-from tests.mutation.forking import ROOT, Case, chosen, outcome, run_mutants
+from tests.mutation.forking import ROOT, Case, Changed, chosen, outcome, run_mutants
 from tests.mutation.mutants import Mutant, mutants
 from tests.optimized.arrivals import CROWDED, ROOMS, Arrivals, arrivals, convoy, scaled
 
@@ -74,21 +70,6 @@ TESTS: Mapping[str, str] = {
 def source_of(module: str) -> Path:
     """The file of a module, which is named as below `carp_optimized`."""
     return FOLDER / f"{module.replace('.', '/')}.py"
-
-
-class Changed(MetaPathFinder, Loader):
-    """Loads a module from another source than its file."""
-
-    def __init__(self, name: str, source: str) -> None:
-        self.name, self.source = name, source
-
-    def find_spec(self, name: str, path: object, target: object = None) -> ModuleSpec | None:
-        del path, target
-        return spec_from_loader(name, self) if name == self.name else None
-
-    def exec_module(self, module: ModuleType) -> None:
-        module.__file__ = str(source_of(self.name.partition(".")[2]))
-        exec(compile(self.source, module.__file__, "exec"), module.__dict__)  # noqa: S102 - a mutant is to be run
 
 
 def cases() -> list[Case]:
@@ -167,7 +148,7 @@ def load(module: str, source: str) -> None:
     for name in [name for name in sys.modules if name.startswith(("carp_optimized", "tests.optimized.test_"))]:
         del sys.modules[name]
     if source:
-        sys.meta_path.insert(0, Changed(f"carp_optimized.{module}", source))
+        sys.meta_path.insert(0, Changed(f"carp_optimized.{module}", source_of(module), source))
     import_module("carp_optimized.state.encoding").DETOUR = 0  # type: ignore[attr-defined]
 
 
