@@ -41,16 +41,6 @@ FOOTPRINTS = ("oracle/test_footprint_check", "oracle/test_footprints", "oracle/t
 OUTCOMES = ("oracle/test_conform_outcome",)
 LEMMAS = ("verify/test_lemmas", "verify/test_formulas")
 TESTS: Mapping[str, Sequence[str]] = {
-    "carp_spec.instance_rules": ("spec/test_instance_rules", "spec/test_plan_rules", "oracle/test_assign"),
-    "carp_spec.plan_rules": ("spec/test_plan_rules", "spec/test_check", "verify/test_rules_as_properties"),
-    "carp_spec.execution.logs": ("spec/test_logs", "oracle/test_check_log"),
-    "carp_spec.requests": ("oracle/test_assign",),
-    "carp_spec.polish_rules": ("spec/test_polish_rules",),
-    "carp_spec.windows": ("spec/test_windows",),
-    "carp_spec.documents.fields": ("spec/test_described_documents", "verify/test_documents"),
-    "carp_spec.documents.instances": ("verify/test_documents",),
-    "carp_spec.documents.solutions": ("verify/test_documents",),
-    "carp_spec.documents.decoding": ("verify/test_documents",),
     "carp_verify.bound.verify": BOUNDS,
     "carp_verify.bound.least": (*BOUNDS, "verify/test_bound_stops"),
     "carp_verify.bound.network": (*BOUNDS, "verify/test_bound_stops"),
@@ -71,7 +61,6 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carp_verify.lemmas.engine": ("verify/test_lemmas",),
     "carp_verify.lemmas.vocabulary": LEMMAS,
     "carp_verify.lemmas.derivation": LEMMAS,
-    "carp_spec.joint_rules": ("spec/test_joint_rules", "spec/test_check"),
     "carp_verify.footprint.apart": FOOTPRINTS,
     "carp_verify.footprint.cells": FOOTPRINTS,
     "carp_verify.footprint.floor": FOOTPRINTS,

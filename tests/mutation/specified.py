@@ -25,25 +25,33 @@ MODULES = {
 }
 OPTIONS = ["-x", "-q", "-pno:cacheprovider", "-pno:xdist", "-pno:cov", "-k", "not every_small_query"]
 SECONDS = 60
+DOCUMENTS = ("spec/test_described_documents", "verify/test_documents", "oracle/test_schema")
 ALSO = {
-    "carp_spec.plan_rules": ["spec/test_check.py", "verify/test_rules_as_properties.py"],
-    "carp_spec.joint_rules": ["spec/test_check.py"],
-    "carp_spec.rule": ["spec/test_check.py"],
-    "carp_reference.time_expanded": ["reference/test_twins.py"],
+    "carp_spec.instance_rules": ("spec/test_plan_rules", "oracle/test_assign"),
+    "carp_spec.plan_rules": ("spec/test_check", "verify/test_rules_as_properties"),
+    "carp_spec.joint_rules": ("spec/test_check",),
+    "carp_spec.rule": ("spec/test_check",),
+    "carp_spec.requests": ("oracle/test_assign",),
+    "carp_spec.execution.logs": ("oracle/test_check_log",),
+    "carp_spec.documents.fields": DOCUMENTS,
+    "carp_spec.documents.instances": DOCUMENTS,
+    "carp_spec.documents.solutions": DOCUMENTS,
+    "carp_spec.documents.decoding": DOCUMENTS,
+    "carp_reference.time_expanded": ("reference/test_twins",),
 }
 """Files of tests beside that of a module's own name."""
 
 
 def tests_of(name: str) -> Iterator[Path]:
-    """The tests of the module's own name and of its rules; where it has none, all of its package's."""
+    """The tests of the module's own name, of its rules, and those named; where it has none, all of its package's."""
     package, *_, module = name.split(".")
     folder = ROOT / "tests" / package.removeprefix("carp_")
-    own = folder / f"test_{module}.py"
+    own, also = folder / f"test_{module}.py", ALSO.get(name, ())
     if own.exists():
         yield own
-        yield from (ROOT / "tests" / each for each in ("verify/test_vectors.py", *ALSO.get(name, ())))
-    else:
+    elif not also:
         yield folder
+    yield from (ROOT / "tests" / f"{each}.py" for each in ("verify/test_vectors", *also))
 
 
 def run(tests: Sequence[Path]) -> int:
