@@ -1,7 +1,8 @@
 """Break the kernel's driver in OCaml in one place after the other, and list what no test notices.
 
 `make kernel-driver-mutants` runs it, and continues where it stopped. `python -m tests.verify.kernel_driver_mutants
-verdicts --every 5` runs each fifth mutant of some files, and `--again` those that survived before.
+verdicts --every 5` runs each fifth mutant of some files, and `--again` those that survived before. Two runs at a time
+may share the work by files.
 `kernel_driver_survivors.md` explains what is left.
 
 The tests run once, and what they ask the kernel is kept with its answers. A mutant is compiled to bytecode, in the
@@ -21,14 +22,12 @@ from argparse import ArgumentParser
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from copy import copy
 from dataclasses import dataclass, field
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Thread
-from traceback import print_exc
 from typing import Any, TextIO
 
 os.environ["HYPOTHESIS_PROFILE"] = "mutation"
@@ -198,12 +197,6 @@ class Builder:
             self.run("ocamlc", "-c", name)
         self.link()
 
-    def moved(self, folder: Path) -> "Builder":
-        """The same in a copy of the folder."""
-        other = copy(self)
-        other.folder = folder
-        return other
-
     def write(self, name: str, text: str) -> None:
         """Write a file of the driver, which takes its arguments from the batch if there is one."""
         (self.folder / name).write_text(text.replace("Sys.argv", "!Batch.argv"))
@@ -339,11 +332,9 @@ def recorded(item: pytest.Item, folder: Path) -> Asked:
 class Tests:
     """A plugin of pytest that runs the collected tests against each mutant, in place of running them once."""
 
-    def __init__(self, chosen: Sequence[Mutant], store: TextIO, processes: int, *, again: bool) -> None:
+    def __init__(self, chosen: Sequence[Mutant], store: TextIO) -> None:
         self.chosen = chosen
         self.store = store
-        self.processes = processes
-        self.again = again
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Pass all tests once, then run the mutants."""
@@ -355,37 +346,19 @@ class Tests:
             order.sort(key=lambda asked: asked.time)
             say(f"{len(order)} tests of {len(tests)}")
             assert outcome_of(original, order) == ("survives", ""), "the driver as it is"
-            places = [shutil.copytree(name, Path(files) / f"of{each}") for each in range(self.processes)]
-            workers = [self.forked(builder.moved(place), order, number) for number, place in enumerate(places)]
-            assert all(os.waitpid(worker, 0)[1] == 0 for worker in workers)
+            self.run(builder, order)
         return True
 
-    def forked(self, builder: Builder, order: list[Asked], first: int) -> int:
-        """The number of a process that runs its share of the mutants."""
-        child = os.fork()
-        if child == 0:
-            code = 1
-            try:
-                self.run(builder, order, self.chosen[first :: self.processes])
-                code = 0
-            except Exception:  # noqa: BLE001 - whatever it is, it is shown
-                print_exc()
-            finally:
-                os._exit(code)
-        return child
-
-    def run(self, builder: Builder, order: list[Asked], chosen: Sequence[Mutant]) -> None:
-        """Run mutants, and keep what comes of them."""
-        for number, mutant in enumerate(chosen, 1):
-            if mutant.key in stored() and not self.again:
-                continue
+    def run(self, builder: Builder, order: list[Asked]) -> None:
+        """Run the mutants, and keep what comes of them."""
+        for number, mutant in enumerate(self.chosen, 1):
             program = builder.built(mutant)
             outcome, test = ("does not compile", "") if program is None else outcome_of(program, order)
             result = {"key": mutant.key, "file": mutant.file, "outcome": outcome, "test": test}
             self.store.write(json.dumps({**result, "line": mutant.line, "change": mutant.change}) + "\n")
             self.store.flush()
             if number % 50 == 0:
-                say(f"{number} of {len(chosen)}")
+                say(f"{number} of {len(self.chosen)}")
 
 
 def say(line: str) -> None:
@@ -504,13 +477,11 @@ def main() -> int:
     parser = ArgumentParser(description=__doc__)
     parser.add_argument("files", nargs="*", default=FILES)
     parser.add_argument("--every", type=int, default=1)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--processes", type=int, default=1)
     parser.add_argument("--again", action="store_true", help="run those again that survived")
     arguments = parser.parse_args()
     os.environ.pop(VARIABLE, None)
     built()
-    chosen = [mutant for file in arguments.files for mutant in [*mutants(file)][arguments.first :: arguments.every]]
+    chosen = [mutant for file in arguments.files for mutant in [*mutants(file)][:: arguments.every]]
     known = stored()
     done = {key for key, each in known.items() if not (arguments.again and each["outcome"] == "survives")}
     say(f"{len(chosen)} mutants, {sum(mutant.key in done for mutant in chosen)} of them done")
@@ -521,7 +492,7 @@ def main() -> int:
     STORE.parent.mkdir(exist_ok=True)
     left = [each for each in chosen if each.key not in done]
     with STORE.open("a") as store:
-        code = pytest.main(options, plugins=[Tests(left, store, arguments.processes, again=arguments.again)])
+        code = pytest.main(options, plugins=[Tests(left, store)])
     known = stored()
     report([known[mutant.key] for mutant in chosen if mutant.key in known])
     return code
