@@ -97,7 +97,6 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carproof.conform.smaller": ("oracle/test_conform_large",),
     "carproof.conform.asking.ladder": ("oracle/test_conform_large",),
     "carproof.conform.judging.driving": ("oracle/test_conform_executor",),
-    "carproof.conform.programs.executor": ("oracle/test_conform_executor",),
 }
 TINY = 80
 """The number of instances of test_tiny_optima.py, one by one, for modules that make or check formulas."""
