@@ -149,7 +149,7 @@ def load(module: str, source: str) -> None:
         del sys.modules[name]
     if source:
         sys.meta_path.insert(0, Changed(f"carp_optimized.{module}", source_of(module), source))
-    import_module("carp_optimized.state.encoding").DETOUR = 0  # type: ignore[attr-defined]
+    import_module("carp_optimized.state.room").DETOUR = 0  # type: ignore[attr-defined]
 
 
 def main(arguments: Sequence[str]) -> int:

@@ -187,9 +187,9 @@ def note_robots_in_spans(state: State, polish: Polish) -> bool:
         slot = int(windows.offset[resource])
         last = slot + int(windows.size[resource]) - 1
         # a stay begins as the window before it ends, and ends as the window behind it begins, but for the gaps
-        while slot < last and windows.start[slot + 1] - state.gap < polish.first[resource]:
+        while slot < last and int(windows.start[slot + 1]) - state.gap < polish.first[resource]:
             slot += 1
-        while slot < last and windows.end[slot] + state.gap <= polish.last[resource]:
+        while slot < last and int(windows.end[slot]) + state.gap <= polish.last[resource]:
             polish.others[windows.robot[slot]] = 1
             slot += 1
     return True

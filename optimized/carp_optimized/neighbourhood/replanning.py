@@ -227,7 +227,7 @@ def lift(state: State, work: Work, first: int, size: int, now: int) -> None:
     """
     for position in range(first, size):
         record = int(state.reserved[work.outside[position]])
-        if record != NONE and state.records.leave[record] + state.gap > now:
+        if record != NONE and int(state.records.leave[record]) + state.gap > now:
             withdraw(state, record)
 
 
