@@ -61,7 +61,7 @@ TESTS: Mapping[str, str] = {
     "test_reasons": "",
     "test_reuse": "beginning-4 every_query each_kind sampled_orders",
     "test_adding": "law reserved",
-    "test_corners": "too_far_is_refused-1 guide_ends",
+    "test_corners": "too_far_is_refused-1 guide_ends detour_longer",
     "test_limits": "too_far largest_tick",
 }
 """Modules of tests/optimized, and words in names or parameters of their tests that take part; "" is all of them."""

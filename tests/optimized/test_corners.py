@@ -136,13 +136,13 @@ def test_a_guide_ends_a_detour_behind_the_start_until_more_of_it_is_asked_for(
 
 @pytest.mark.parametrize("planner", PLANNERS, ids=str)
 def test_a_detour_longer_than_that_of_a_guide_is_found(monkeypatch: pytest.MonkeyPatch, planner: Planner) -> None:
-    """The short way from a to d is blocked by a robot that stays, or for 30 ticks; the long one has eleven cells."""
+    """The short way from a to d is blocked by a robot that stays, or for 33 ticks; the long one has eleven cells."""
     long = tuple(f"l{k}" for k in range(11))
     cells = tuple(Resource(cell) for cell in ("a", "b", "d", "side", *long))
     around = ("a", *long, "d")
     graph = ResourceGraph(cells, (("a", "b"), ("b", "d"), ("b", "side"), *pairwise(around)))
-    robot = Robot("r", "a", "d", release=2)
-    for stays in (Robot("stays", "b", "b"), Robot("stays", "b", "side", pace=30)):
+    robot = Robot("r", "a", "d", release=20)
+    for stays in (Robot("stays", "b", "b"), Robot("stays", "b", "side", pace=33)):
         for detour in (0, 1, 8, LARGEST):
             monkeypatch.setattr(room, "DETOUR", detour)
             assert_alike(Instance(graph, (stays, robot), "park"), planner)
