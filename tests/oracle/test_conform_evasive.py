@@ -1,5 +1,6 @@
 """Programs and functions that are never caught in a wrong answer, as they give none, or damage what judges look at."""
 
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, TypeAlias
@@ -9,7 +10,7 @@ from msgspec import structs
 from tests.oracle.test_conform_judges import Tampered, as_it_is
 
 import carp_reference
-from carp_spec import Carp, Instance, Plan, Solution
+from carp_spec import Carp, Instance, Plan, Solution, Visit
 from carp_spec.documents.instances import digest
 from carp_spec.documents.verdicts import VerdictDocument
 from carproof import BoundDocument
@@ -131,16 +132,82 @@ def forgets_the_robots(instance: Instance) -> Solution:
     return NO_PLANS
 
 
+def jumps(instance: Instance) -> Solution:
+    """Every robot goes from its start straight to its goal, on a map on which that is a move."""
+    ids = tuple(instance.graph.index)
+    object.__setattr__(instance.graph, "successors", dict.fromkeys(ids, ids))
+    return right(instance)
+
+
+class Fickle(Visit, frozen=True):
+    """A visit that ends when it is looked at."""
+
+    def __getattribute__(self, name: str) -> Any:  # noqa: ANN401
+        if name == "leave":
+            raise RuntimeError("not now")
+        return super().__getattribute__(name)
+
+
+class Never(int):
+    """A tick that is in order with every other."""
+
+    def __lt__(self, other: object) -> bool:
+        return False
+
+    def __gt__(self, other: object) -> bool:
+        return False
+
+    def __eq__(self, other: object) -> bool:
+        return True
+
+    def __hash__(self) -> int:
+        return 0
+
+
+def with_visits(solution: Solution, change: Callable[[Visit], Any]) -> Solution:
+    plans = [Plan(plan.robot, [change(visit) for visit in plan.visits]) for plan in solution.plans]  # type: ignore[arg-type]
+    return replace(solution, plans=plans)  # type: ignore[arg-type]
+
+
+def never_in_conflict(instance: Instance) -> Solution:
+    return with_visits(right(instance), lambda visit: Visit(visit.resource, Never(0), Never(0)))
+
+
 def says_true_for_one(instance: Instance) -> Solution:
-    solution = right(instance)
-    visits = ((plan, [structs.replace(visit, enter=True) for visit in plan.visits]) for plan in solution.plans)
-    return replace(solution, plans=tuple(Plan(plan.robot, tuple(each)) for plan, each in visits))
+    return with_visits(right(instance), lambda visit: Visit(visit.resource, True, visit.leave))
+
+
+def is_fickle(instance: Instance) -> Solution:
+    return with_visits(right(instance), lambda visit: Fickle(visit.resource, visit.enter, visit.leave))
+
+
+def names_no_plans(_: Instance) -> Solution:
+    return Solution(None, None, None)  # type: ignore[arg-type]
+
+
+def skips_the_test(_: Instance) -> Solution:
+    pytest.skip("it is late")
+
+
+def ends_python(_: Instance) -> Solution:
+    sys.exit(0)
 
 
 @pytest.mark.parametrize(
-    ("planner", "rule"), [(forgets_the_robots, "solution/covers"), (says_true_for_one, "program/result")]
+    ("planner", "rules"),
+    [
+        (forgets_the_robots, {"solution/covers"}),
+        (jumps, {"plan/move"}),
+        (never_in_conflict, {"program/result", "plan/start"}),
+        (says_true_for_one, {"program/result"}),
+        (is_fickle, {"program/result"}),
+        (names_no_plans, {"program/result"}),
+        (skips_the_test, {"program/alive"}),
+        (ends_python, {"program/alive"}),
+    ],
 )
-def test_a_function_cannot_reach_the_judges(planner: Callable[[Instance], Solution], rule: str) -> None:
+def test_a_function_cannot_reach_the_judges(planner: Callable[[Instance], Solution], rules: set[str]) -> None:
     report = conform(Function(planner, "mine"), Options(examples=60, shrink_seconds=1, whole=True))
     assert report.conforms is False
-    assert rule in {finding.rule for finding in report.findings}
+    assert {finding.rule for finding in report.findings} & rules
+    assert {finding.rule for finding in report.findings} <= rules | {"plan/goal", "plan/duration", "plan/contiguous"}
