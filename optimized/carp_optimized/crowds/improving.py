@@ -6,25 +6,21 @@ import numpy as np
 
 from carp_optimized.crowds.crowd import Crowd, ways_of
 from carp_optimized.crowds.making_way import make_way
-from carp_optimized.crowds.rounds import (
+from carp_optimized.crowds.rounds import FIRST_WEIGHTS, FULL, plan_each, plan_first, play, put_all
+from carp_optimized.crowds.sipp import EFFORT, GREED, WHOLE, no_query
+from carp_optimized.crowds.soft_sipp import no_soft_query
+from carp_optimized.crowds.state import (
     BEST,
     CHANCE,
+    COUNTS,
     DIRTY,
-    FIRST_WEIGHTS,
-    FULL,
     MISSED,
     MOST_MEMBERS,
     ROUNDS,
     TOTAL,
     TURNING,
     Rounds,
-    plan_each,
-    plan_first,
-    play,
-    put_all,
 )
-from carp_optimized.crowds.sipp import EFFORT, GREED, WHOLE, no_query
-from carp_optimized.crowds.soft_sipp import no_soft_query
 from carp_optimized.crowds.stays import Paths, no_paths, no_stays, with_more_room
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
@@ -54,17 +50,19 @@ class Improving:
             crowd=crowd,
             stays=stays,
             query=no_query(stays),
+            soft=no_soft_query(stays, np.zeros(robots, np.int32)),
             paths=paths,
             best=no_paths(robots, room),
             tried=no_paths(MOST_MEMBERS, room),
             least=ways_of(crowd),
             members=np.zeros(MOST_MEMBERS, np.int32),
+            waits=np.zeros(MOST_MEMBERS, np.int32),
             key=np.zeros(MOST_MEMBERS, np.int64),
             mark=np.zeros(robots, np.int32),
             changed=np.zeros(robots, np.int32),
             is_changed=np.zeros(robots, np.int32),
             weight=np.array(FIRST_WEIGHTS, np.int64),
-            counts=np.zeros(10, np.int64),
+            counts=np.zeros(COUNTS, np.int64),
             stream=np.array([seed], np.uint64),
         )
         self._native = Native(self.rounds)
@@ -152,20 +150,17 @@ class Improving:
         waiting = np.zeros(self.rounds.paths.size.size, np.int32)
         waiting[: missing.size] = missing
         fewest = count = missing.size
-        met = np.zeros(waiting.size, np.int32)
         greed, calls = WHOLE, 0
-        soft = Native(no_soft_query(self.rounds.stays, met))
         self._remember()
         while count > 0 and goes_on(count):
-            soft.fields.labels.counts[GREED] = greed
-            count = make_way(self._native, soft, waiting, count, WORK)
+            self.rounds.soft.labels.counts[GREED] = greed
+            count = make_way(self._native, waiting, count, WORK)
             calls += 1
             if calls == SLOW:
                 greed, calls = min(2 * greed, GREEDIEST), 0
             if count < 0:
                 count = ~count
                 self._make_room()
-                soft = Native(no_soft_query(self.rounds.stays, met))
             if 0 < 2 * count <= fewest:  # copies of many long paths take long
                 fewest, calls = count, 0
                 self._remember()
@@ -184,7 +179,9 @@ class Improving:
     def _make_room(self) -> None:
         stays = with_more_room(self.rounds.stays)
         query = no_query(stays)._replace(counts=self.rounds.query.counts)
-        self.rounds = self.rounds._replace(stays=stays, query=query)
+        soft = no_soft_query(stays, self.rounds.soft.met)
+        soft.labels.counts[:] = self.rounds.soft.labels.counts
+        self.rounds = self.rounds._replace(stays=stays, query=query, soft=soft)
         self._native = Native(self.rounds)
 
 

@@ -149,7 +149,7 @@ def expand(crowd: Crowd, stays: Stays, query: Query, robot: int, gap: int, least
     distance = crowd.distance[robot]
     begin = int(crowd.first[place])
     choices = int(crowd.first[place + 1]) - begin
-    turn = 0 if query.counts[TURN] == 0 else (int(query.counts[TURN]) >> (place & PLACES)) % choices
+    turn = turn_at(query, place, choices)
     for k in range(turn, turn + choices):
         target = int(crowd.target[begin + k if k < choices else begin + k - choices])
         rest = int(distance[target])
@@ -174,6 +174,13 @@ def expand(crowd: Crowd, stays: Stays, query: Query, robot: int, gap: int, least
                 reach(query, into, tick, gap, bucket_of(query, bound - least, rest))
             into += 1
     return True
+
+
+@compiled
+def turn_at(query: Query, place: int, choices: int) -> int:
+    """The edge that comes first in a place from which so many lead."""
+    turn = int(query.counts[TURN])
+    return 0 if turn == 0 else (turn >> (place & PLACES)) % choices
 
 
 @compiled

@@ -12,6 +12,7 @@ import numpy as np
 
 from carp_optimized.crowds.crowd import FAR, Crowd
 from carp_optimized.crowds.sipp import (
+    EFFORT,
     EXPANDED,
     GENERATION,
     LABELS,
@@ -22,11 +23,11 @@ from carp_optimized.crowds.sipp import (
     next_label,
     query_of,
     reach,
+    turn_at,
 )
 from carp_optimized.crowds.stays import Paths, Stays, end_of, later_than, robot_at, start_of
 from carp_optimized.jit.compiling import compiled
 from carp_optimized.jit.kinds import Ints
-from carp_optimized.jit.references import dereference
 from carp_optimized.state.arrays import NEVER, NONE
 
 PRICE = 16
@@ -44,9 +45,6 @@ class SoftQuery(NamedTuple):
     met: Ints
 
 
-soft_query_at = dereference(SoftQuery)
-
-
 def no_soft_query(stays: Stays, met: Ints) -> SoftQuery:
     """The scratch for these rows."""
     parts = 2 * stays.enter.size
@@ -54,12 +52,15 @@ def no_soft_query(stays: Stays, met: Ints) -> SoftQuery:
 
 
 @compiled
-def find_soft_path(crowd: Crowd, stays: Stays, query: SoftQuery, robot: int, paths: Paths, row: int) -> bool:
-    """Write a path into the row; `False` if none is found, or it has too many visits."""
+def find_soft_path(
+    crowd: Crowd, stays: Stays, query: SoftQuery, robot: int, latest: int, paths: Paths, row: int
+) -> bool:
+    """Write a path that arrives by the tick `latest`; `False` if none is found, or it has too many visits."""
     start = int(crowd.start[robot])
     goal = int(crowd.goal[robot])
     labels = query.labels
     begin(labels)
+    most = labels.counts[EXPANDED] + labels.counts[EFFORT]
     least = int(crowd.distance[robot][start])
     reach_part(query, 2 * int(stays.first[start]), 0, 0, NONE, least, least)
     found = NONE
@@ -75,7 +76,7 @@ def find_soft_path(crowd: Crowd, stays: Stays, query: SoftQuery, robot: int, pat
             break
         labels.counts[EXPANDED] += 1
         labels.mark[part] = -labels.mark[part]  # a later arrival of less price would come after those that follow
-        if not expand_part(crowd, stays, query, robot, part, least):
+        if labels.counts[EXPANDED] > most or not expand_part(crowd, stays, query, robot, part, least, latest):
             break
     clear(labels)
     return found != NONE and write_soft_path(stays, query, found, paths, row)
@@ -119,24 +120,29 @@ def worth_of(query: SoftQuery, robot: int) -> int:
 
 
 @compiled
-def expand_part(crowd: Crowd, stays: Stays, query: SoftQuery, robot: int, part: int, least: int) -> bool:
+def expand_part(crowd: Crowd, stays: Stays, query: SoftQuery, robot: int, part: int, least: int, latest: int) -> bool:
     """Reach the next part, and all those to which a move leads; `False` if there is no room for that many labels."""
     place = int(stays.place[part // 2])
     distance = crowd.distance[robot]
     soon = int(query.labels.arrive[part]) + 1
     price = int(query.paid[part]) - int(query.labels.arrive[part])
     until = end_of_part(stays, part)
-    if until < NEVER:
+    if until < NEVER and (until + int(distance[place]) <= latest or distance[place] == 0):
         paid = until + price + price_of(stays, query, part + 1)
         reach_part(query, part + 1, until, paid, part, int(distance[place]), least)
-    for edge in range(int(crowd.first[place]), int(crowd.first[place + 1])):
-        target = int(crowd.target[edge])
+    first = int(crowd.first[place])
+    choices = int(crowd.first[place + 1]) - first
+    turn = turn_at(query.labels, place, choices)
+    for k in range(turn, turn + choices):
+        target = int(crowd.target[first + k if k < choices else first + k - choices])
         rest = int(distance[target])
+        if soon + rest > latest:
+            continue
         into = part_at(stays, target, soon)
         last = last_part(stays, target) if rest < FAR else NONE
         while into <= last:
             tick = max(soon, start_of_part(stays, into))
-            if tick > until:
+            if tick > until or tick + rest > latest:
                 break
             if query.labels.counts[LABELS] + 1 >= query.labels.gap.size:
                 return False

@@ -21,7 +21,7 @@ SPARE = 6
 
 
 class Stays(NamedTuple):
-    """The stays in r are `first[r]` to `first[r] + size[r]`; its room ends at `first[r + 1]`. `full[0]` was full."""
+    """The stays in r are `first[r]` to `first[r] + size[r]`; its room ends at `first[r + 1]`."""
 
     first: Ints
     size: Ints
@@ -29,7 +29,6 @@ class Stays(NamedTuple):
     enter: Ints
     leave: Ints
     robot: Ints
-    full: Ints
 
 
 class Paths(NamedTuple):
@@ -75,7 +74,6 @@ def no_stays(visits: Ints) -> Stays:
         enter=np.empty(total, np.int32),
         leave=np.empty(total, np.int32),
         robot=np.empty(total, np.int32),
-        full=np.zeros(1, np.int32),
     )
 
 
@@ -137,6 +135,20 @@ def leave_of(crowd: Crowd, paths: Paths, row: int, visit: int) -> int:
 
 
 @compiled
+def met_at(crowd: Crowd, stays: Stays, paths: Paths, row: int, visit: int) -> int:
+    """A robot that a path meets in the place of a visit, or on the way to it, or `NONE`."""
+    place = int(paths.place[row][visit])
+    enter = int(paths.enter[row][visit])
+    at = int(stays.first[place]) + later_than(stays, place, leave_of(crowd, paths, row, visit) - 1) - 1
+    if at >= stays.first[place] and stays.leave[at] > enter:
+        return int(stays.robot[at])
+    other = robot_at(stays, place, enter - 1) if visit > 0 else NONE
+    if other != NONE and robot_at(stays, int(paths.place[row][visit - 1]), enter) == other:
+        return other
+    return NONE
+
+
+@compiled
 def put(crowd: Crowd, stays: Stays, paths: Paths, row: int, robot: int) -> bool:
     """Add the stays of a path; `False` if a row of stays is full, and then none is added."""
     for visit in range(int(paths.size[row])):
@@ -144,7 +156,6 @@ def put(crowd: Crowd, stays: Stays, paths: Paths, row: int, robot: int) -> bool:
         size = int(stays.size[place])
         first = int(stays.first[place])
         if first + size + 1 >= stays.first[place + 1]:
-            stays.full[0] = place
             drop(stays, paths, row, visit)
             return False
         enter = int(paths.enter[row][visit])

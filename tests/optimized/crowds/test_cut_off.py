@@ -8,8 +8,9 @@ from tests.optimized.crowds.measuring import measured, on_grid
 from carp_optimized.crowds.crowd import Crowd
 from carp_optimized.crowds.cut_off import is_cut_off
 from carp_optimized.crowds.improving import Improving
-from carp_optimized.crowds.rounds import GREEDY, Rounds, rounds_at
+from carp_optimized.crowds.rounds import GREEDY
 from carp_optimized.crowds.sipp import EXPANDED, MANY, UNTIL_FOUND
+from carp_optimized.crowds.state import Rounds, rounds_at
 from carp_optimized.crowds.stays import Paths, no_paths
 from carp_optimized.jit.compiling import entry
 from carp_optimized.jit.references import Native
