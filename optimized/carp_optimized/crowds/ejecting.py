@@ -8,13 +8,13 @@ until nobody waits, or the sum cannot be kept. Who was put out of a path that wa
 from carp_optimized.crowds.sipp import EFFORT, TURN, UNTIL_FOUND, find_path
 from carp_optimized.crowds.soft_sipp import find_soft_path
 from carp_optimized.crowds.state import (
+    CHANCE,
     MARK,
     MOST_MEMBERS,
     SIZE,
     Rounds,
     add_member,
     delayed,
-    draw_raise,
     draw_turn,
     end_round,
     latest_of,
@@ -25,6 +25,7 @@ from carp_optimized.crowds.state import (
 from carp_optimized.crowds.stays import arrival, met_at
 from carp_optimized.jit.compiling import compiled
 from carp_optimized.neighbourhood.orders import choice
+from carp_optimized.neighbourhood.polishing import draw_raise
 from carp_optimized.state.arrays import NONE
 
 STEPS = 32
@@ -36,7 +37,7 @@ BETWEEN, THROUGH = 8, 16
 @compiled
 def eject(state: Rounds) -> bool:
     """Let a delayed robot arrive earlier; the sum grows by the raise at most. `False` if a row of stays is full."""
-    raised = draw_raise(state)
+    raised = draw_raise(state.stream, int(state.counts[CHANCE]))
     add_member(state, delayed(state))
     take_out(state, 0)
     member = 0

@@ -24,7 +24,6 @@ from carp_optimized.crowds.state import (
     Rounds,
     add_member,
     begin_round,
-    draw_raise,
     draw_turn,
     end_round,
     expanded,
@@ -38,6 +37,7 @@ from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
 from carp_optimized.neighbourhood.orders import choice, shuffle
+from carp_optimized.neighbourhood.polishing import draw_raise
 from carp_optimized.state.arrays import NEVER, NONE
 
 IN_WAY, CROSSING, TURNS, DRAWN, EJECTING = range(5)  # the kinds
@@ -195,7 +195,7 @@ def replan(state: Rounds) -> bool:
     size = int(state.counts[SIZE])
     for member in range(size):
         take_out(state, member)
-    raised = draw_raise(state)
+    raised = draw_raise(state.stream, int(state.counts[CHANCE]))
     is_kept = True
     has_room = True
     member = 0

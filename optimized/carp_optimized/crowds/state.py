@@ -16,7 +16,7 @@ from carp_optimized.neighbourhood.orders import choice
 from carp_optimized.neighbourhood.polishing import SURE
 
 TOTAL, BEST, CHANCE, DIRTY, MARK, SIZE, WORK, ROUNDS, MISSED, TURNING, BEFORE, AFTER, REST = range(13)  # the counts
-COUNTS = 13
+COUNTS = REST + 1
 MOST_MEMBERS = 16
 
 
@@ -149,15 +149,6 @@ def keep(state: Rounds) -> None:
             state.is_changed[robot] = 0
             copy_path(state.paths, robot, state.best, robot)
         counts[DIRTY] = 0
-
-
-@compiled
-def draw_raise(state: Rounds) -> int:
-    """The ticks by which the sum may grow in this round."""
-    raised = 0
-    while state.counts[CHANCE] > 0 and choice(state.stream, SURE) < state.counts[CHANCE]:
-        raised += 1
-    return raised
 
 
 @compiled

@@ -411,7 +411,7 @@ def replan_members(state: State, polish: Polish, size: int) -> None:
         else:
             limit += cost_of(state, record)
             withdraw(state, record)
-    planned = plan_members(state, polish, size, missing, limit + draw_raise(polish))
+    planned = plan_members(state, polish, size, missing, limit + draw_raise(polish.stream, int(polish.counts[CHANCE])))
     if planned == size:
         keep_members(polish, size)
         return
@@ -427,10 +427,10 @@ def replan_members(state: State, polish: Polish, size: int) -> None:
 
 
 @compiled
-def draw_raise(polish: Polish) -> int:
-    """Draw by how much the round may raise the total: each further tick by the chance, which is below `SURE`."""
+def draw_raise(stream: Numbers, chance: int) -> int:
+    """Draw by how much a round may raise the total: each further tick by the chance, which is below `SURE`."""
     ticks = 0
-    while polish.counts[CHANCE] > 0 and choice(polish.stream, SURE) < polish.counts[CHANCE]:
+    while chance > 0 and choice(stream, SURE) < chance:
         ticks += 1
     return ticks
 
