@@ -23,10 +23,10 @@ SIDES = {100: 20, 1000: 64, 10_000: 200}
 """Of the grids, by the number of robots."""
 SECONDS = 10
 PHASES = {
-    "distances": "_measured",
+    "distances": "_is_measured",
     "LaCAM": "_searched",
     "guides": "guides_of",
-    "prioritized planning": "_planned_in_order",
+    "prioritized planning": "planned_in_order",
     "rounds": "improved",
     "check": "require_lawful",
     "plans as a solution": "solution_along",

@@ -9,9 +9,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from carp_optimized.jit.compiling import entry
 from carp_optimized.jit.kinds import Ints, ShortTable
-from carp_optimized.jit.references import Native, dereference
+from carp_optimized.jit.references import dereference
 from carp_optimized.state.encoding import encode_graph
 from carp_spec import Instance
 
@@ -19,9 +18,6 @@ GONE = -1
 """The place of a robot that has vanished."""
 FAR = 2**15 - 1
 """More than any distance that is measured."""
-LANDMARKS = 8
-PART = 32
-"""The robots that one compiled call measures, so that a clock can be looked at."""
 
 
 class Crowd(NamedTuple):
@@ -98,65 +94,3 @@ def only(crowd: Crowd, robots: npt.NDArray[np.bool_]) -> Crowd:
     if robots.all():
         return crowd
     return crowd._replace(start=crowd.start[robots], goal=crowd.goal[robots], distance=crowd.distance[robots])
-
-
-def near(crowd: Crowd) -> Ints:
-    """About how far each robot has to go: the most by which its places differ in the distance to some landmark.
-
-    On undirected graphs it is no further than that (Goldberg and Harrelson 2005).
-    """
-    resources = crowd.queue.size
-    marks = crowd._replace(
-        start=np.zeros(LANDMARKS, np.int32),
-        goal=np.zeros(LANDMARKS, np.int32),
-        distance=np.empty((LANDMARKS, resources), np.int16),
-    )
-    native = Native(marks)
-    least = np.full(resources, FAR, np.int32)
-    found = np.zeros(crowd.start.size, np.int32)
-    for mark in range(LANDMARKS):
-        marks.goal[mark] = np.argmax(np.where(least < FAR, least, -1))
-        measure(native, np.arange(LANDMARKS, dtype=np.int32), mark, mark + 1, FAR)
-        distance = marks.distance[mark].astype(np.int32)
-        found = np.maximum(found, np.abs(distance[crowd.start] - distance[crowd.goal]))
-        least = np.minimum(least, distance)
-    return found
-
-
-@entry
-def measure(native: Native[Crowd], order: Ints, begin: int, end: int, beyond: int) -> None:
-    """Measure the distances of the robots `order[begin:end]`, by breadth-first search from their goals.
-
-    It goes so many steps beyond the start. What is further away then gets the next distance: less than its own, and
-    right for A*, as it differs from those around it by at most one.
-    """
-    crowd = crowd_at(native)
-    queue = crowd.queue
-    for number in range(begin, end):
-        robot = int(order[number])
-        distance = crowd.distance[robot]
-        for resource in range(queue.size):
-            distance[resource] = FAR
-        start = int(crowd.start[robot])
-        queue[0] = crowd.goal[robot]
-        distance[int(crowd.goal[robot])] = 0
-        size = 1
-        k = 0
-        last = FAR - 1
-        while k < size:
-            place = int(queue[k])
-            k += 1
-            further = int(distance[place]) + 1
-            if further > last:
-                break
-            if place == start:
-                last = min(last, further - 1 + beyond)
-            for edge in range(int(crowd.backward_first[place]), int(crowd.backward_first[place + 1])):
-                source = int(crowd.source[edge])
-                if distance[source] == FAR:
-                    distance[source] = further
-                    queue[size] = source
-                    size += 1
-        if k < size and last < FAR - 1:
-            for resource in range(queue.size):
-                distance[resource] = min(int(distance[resource]), last + 1)

@@ -13,7 +13,8 @@ from time import perf_counter
 import numpy as np
 
 import carp_optimized
-from carp_optimized.crowds.crowd import crowd_of, near
+from carp_optimized.crowds.crowd import crowd_of
+from carp_optimized.crowds.distances import near
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.annealing import BRIEF, anneal
 from carp_optimized.improve.holding import plan_holding_starts

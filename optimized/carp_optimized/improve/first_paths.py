@@ -4,9 +4,6 @@ With the shortest way first, robots that arrive early park early, and those that
 makes jams, passes in other orders follow, else less greedy ones. Who soon finds no path takes one on which it meets few
 others, and those are planned again. If that is not much better than LaCAM, LaCAM follows guides too. Where nothing
 ends, as many robots as possible are planned one after the other.
-
-Where there is no time to measure all distances, the nearest robots are planned, with distances that end a little beyond
-their starts.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -14,20 +11,17 @@ from math import inf
 
 import numpy as np
 
-from carp_optimized.crowds.crowd import PART, Crowd, measure, near, ways_of
+from carp_optimized.crowds.crowd import Crowd, ways_of
 from carp_optimized.crowds.improving import Improving, arrivals, total_of
 from carp_optimized.crowds.rounds import GREEDY
 from carp_optimized.crowds.sipp import UNTIL_FOUND
 from carp_optimized.crowds.stays import Paths, no_paths
 from carp_optimized.improve.clock import ALL, Clock
 from carp_optimized.jit.kinds import Ints
-from carp_optimized.jit.references import Native
 from carp_optimized.lacam.guides import guides_of
 from carp_optimized.lacam.search import RUNNING, STEPS, Search
 from carp_optimized.state.arrays import NO_LIMIT
 
-BEYOND = 64
-"""How much further than to its start the distances of a robot are measured where there is no time for all."""
 SEARCHING, GUIDING, GUIDED, LAST, LATEST = 3, 4, 5, 6, 7
 """The eighths of the time after which prioritized planning ends, then LaCAM and guides, then LaCAM with guides.
 
@@ -180,18 +174,3 @@ def planned_in_order(crowd: Crowd, timer: Clock, seed: int, until: int, greed: i
         return improving.missed < last and goes_on(is_likely=is_soon or timer.spent < patient)
 
     return improving.make_way(gets_fewer)
-
-
-def nearest_paths(crowd: Crowd, timer: Clock) -> Paths:
-    """The paths of as many robots as there is time for, about the nearest first, each measured when it is planned."""
-    native = Native(crowd)
-    order = np.argsort(near(crowd), kind="stable").astype(np.int32)
-    improving = Improving(crowd, no_paths(order.size, LONGEST))
-    for begin in range(0, order.size, PART):
-        part = order[begin : begin + PART]
-        if not timer.goes_on():
-            break
-        measure(native, part, 0, part.size, BEYOND)
-        improving.plan_first(part, timer.goes_on, GREEDY, UNTIL_FOUND)
-        timer.reserve(int(improving.rounds.paths.size.sum()))
-    return improving.rounds.paths

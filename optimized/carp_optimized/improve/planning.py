@@ -6,27 +6,32 @@ best ones (`carp_optimized.improve.cycles`). What takes time at the end is timed
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from math import inf
 from time import perf_counter
 
 import numpy as np
 
 from carp_optimized.crowds.checking import require_lawful
-from carp_optimized.crowds.crowd import FAR, PART, Crowd, are_apart, crowd_of, is_stepwise, measure, only, ways_of
+from carp_optimized.crowds.crowd import FAR, Crowd, are_apart, crowd_of, is_stepwise, only, ways_of
+from carp_optimized.crowds.distances import PART, are_right, estimate, landmarks_of, measure, near
 from carp_optimized.crowds.improving import LONGER, arrivals, total_of
 from carp_optimized.crowds.stays import Paths, no_paths, solution_along
 from carp_optimized.improve.clock import Clock
 from carp_optimized.improve.cycles import Advance, improved
-from carp_optimized.improve.first_paths import first_paths, nearest_paths
+from carp_optimized.improve.first_paths import first_paths
+from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
 from carp_spec import Instance, Solution
 
-MEASURING = 0.7
-"""The part of the time in which the distances of all robots must be measured; else only the nearest are planned."""
-DECIDED = 1 / 32
-"""The part of the time that measuring must have taken before that is decided: the first few may take longer."""
-SAMPLE, SLOWER = 5000, 4
-"""It is timed how long it takes to make that many visits; checking and making plans takes this many times as long."""
+LONG, MEASURING = 1 / 8, 0.7
+"""The parts of the time in which all distances must be measured where estimates are as good, and where not."""
+NEAREST = 1 / 2
+"""Else the distances of the nearest robots are known after this part; the others are left out."""
+LOADING = 4 * PART
+"""The robots after which it is looked whether measuring is too long: the machine code may have to be loaded first."""
+SAMPLE, SAMPLES, SLOWER = 5000, 4, 3
+"""The least time counts that so many visits take to make; checking and making all takes this many times as long."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,14 +65,13 @@ def plan_crowd(
     apart = are_apart(crowd)
     rows, crowd = np.flatnonzero(apart), only(crowd, apart)
     timer.visit = time_of_visit(instance, clock, finish)
-    is_measured = _measured(crowd, timer)
-    if is_measured:
-        has_way = ways_of(crowd) < FAR
-        rows, crowd = rows[has_way], only(crowd, has_way)
-    paths = _paths(crowd, timer, is_measured, iterations, seed, advance)
+    is_measured = _is_measured(crowd, timer)
+    has_way = ways_of(crowd) < FAR
+    rows, crowd = rows[has_way], only(crowd, has_way)
+    paths = _paths(crowd, timer, iterations, seed, advance)
     require_lawful(crowd, paths)
     solution = solution_along(instance, [instance.robots[row] for row in rows], paths)
-    return Found(solution, int(ways_of(crowd)[paths.size > 0].sum()))
+    return Found(solution, int(ways_of(crowd)[paths.size > 0].sum()) if is_measured else None)
 
 
 def improve_crowd(
@@ -87,7 +91,8 @@ def improve_crowd(
     timer.visit = time_of_visit(instance, clock)
     paths = _paths_of_plans(instance, solution)
     timer.reserve(int(paths.size.sum()))
-    if not _measured(crowd, timer):
+    _is_measured(crowd, timer)
+    if (ways_of(crowd) == FAR).any():
         return solution
     paths = improved(crowd, [paths], None, timer, seed, advance)
     require_lawful(crowd, paths)
@@ -107,33 +112,48 @@ def _paths_of_plans(instance: Instance, solution: Solution) -> Paths:
     return paths
 
 
-def _measured(crowd: Crowd, timer: Clock) -> bool:
-    """Whether the distances of all robots are measured, as there is time for it."""
+def _is_measured(crowd: Crowd, timer: Clock) -> bool:
+    """Whether the distances of robots that have ways are measured, and not estimated.
+
+    Robots for which there is no time have none.
+    """
     native = Native(crowd)
     robots = np.arange(crowd.start.size, dtype=np.int32)
     began, time = timer.spent, timer.seconds or inf
     for done in range(0, robots.size, PART):
-        took = timer.spent - began
-        expected = took * (robots.size - done) / max(done, 1)
-        if took > DECIDED * time and timer.spent + expected > MEASURING * time:
-            return False
-        measure(native, robots, done, min(done + PART, robots.size), FAR)
-        if done == 0:  # the machine code may have to be loaded first
+        if done == PART:
             began = timer.spent
+        if done >= LOADING:
+            ends = timer.spent + (timer.spent - began) * (robots.size - done) / (done - PART)
+            if done == LOADING and ends > LONG * time and are_right(crowd, landmarks := landmarks_of(crowd)):
+                _of_nearest(crowd, timer, partial(estimate, native, Native(landmarks)))
+                return False
+            if ends > MEASURING * time:
+                _of_nearest(crowd, timer, partial(measure, native))
+                break
+        measure(native, robots, done, min(done + PART, robots.size))
     return True
 
 
-def _paths(crowd: Crowd, timer: Clock, is_measured: bool, iterations: int | None, seed: int, advance: Advance) -> Paths:
+def _of_nearest(crowd: Crowd, timer: Clock, find: Callable[[Ints, int, int], None]) -> None:
+    """Find the distances of robots, about the nearest first; those for which there is no time have no way."""
+    order = np.argsort(near(crowd), kind="stable").astype(np.int32)
+    for done in range(0, order.size, PART):
+        if timer.spent > NEAREST * (timer.seconds or inf):
+            late = order[done:]
+            crowd.distance[late, crowd.start[late]] = FAR
+            break
+        find(order, done, min(done + PART, order.size))
+
+
+def _paths(crowd: Crowd, timer: Clock, iterations: int | None, seed: int, advance: Advance) -> Paths:
     """The paths of as many robots as possible, and the best ones if all have some."""
     if crowd.start.size == 0:
         return no_paths(0, 1)
-    if is_measured:
-        timer.reserve(int(ways_of(crowd).sum()))
-        timer.begun = timer.spent
-        starts = first_paths(crowd, timer, seed)
-        timer.begun = 0.0
-    else:
-        starts = [nearest_paths(crowd, timer)]
+    timer.reserve(int(ways_of(crowd).sum()))
+    timer.begun = timer.spent
+    starts = first_paths(crowd, timer, seed)
+    timer.begun = 0.0
     timer.reserve(max(int(each.size.sum()) for each in starts))
     paths = min(starts, key=total_of)
     if paths.size.all() and timer.goes_on():
@@ -150,9 +170,14 @@ def time_of_visit(
     What a solution of no visits takes does not count: that of 10,000 robots takes as long as 20,000 visits.
     """
     ticks = np.arange(SAMPLE, dtype=np.int32)[np.newaxis]
-    spent = []
-    for visits in (SAMPLE, 0, SAMPLE):  # the first time takes longer
-        started = clock()
-        finish(solution_along(instance, instance.robots[:1], Paths(np.full(1, visits, np.int32), 0 * ticks, ticks)))
-        spent.append(clock() - started)
-    return SLOWER * max(spent[2] - spent[1], 0.0) / SAMPLE
+
+    def least(visits: int) -> float:
+        paths = Paths(np.full(1, visits, np.int32), 0 * ticks, ticks)
+        spent = []
+        for _ in range(SAMPLES):
+            started = clock()
+            finish(solution_along(instance, instance.robots[:1], paths))
+            spent.append(clock() - started)
+        return min(spent)
+
+    return SLOWER * max(least(SAMPLE) - least(0), 0.0) / SAMPLE

@@ -109,8 +109,7 @@ def find_guides(native: Native[Guides], order: Ints, begin: int, end: int) -> No
     for k in range(begin, end):
         robot = int(order[k])
         count_guide(guides, robot, -1)
-        found = find_guide(guides, robot)
-        write_guide(guides, robot, found)
+        write_guide(guides, robot, find_guide(guides, robot))
         count_guide(guides, robot, 1)
 
 
@@ -174,7 +173,10 @@ def edge_between(crowd: Crowd, source: int, target: int) -> int:
 
 @compiled
 def find_guide(guides: Guides, robot: int) -> int:
-    """The label of the goal at the end of a way that meets the fewest (Dijkstra), of these one of the shortest."""
+    """The label of the goal at the end of a way that meets the fewest (Dijkstra), of these one of the shortest.
+
+    `NONE` if there is none because the distance from the start is an estimate, and too low by more than `SLACK`.
+    """
     crowd = guides.crowd
     distance = crowd.distance[robot]
     start = int(crowd.start[robot])
@@ -189,7 +191,7 @@ def find_guide(guides: Guides, robot: int) -> int:
     guides.before[label] = NONE
     push(guides.keys, guides.nodes, 0, least, label)
     size = 1
-    while True:
+    while size > 0:
         label = int(guides.nodes[0])
         size -= 1
         replace_root(guides.keys, guides.nodes, size, int(guides.keys[size]), int(guides.nodes[size]))
@@ -221,12 +223,14 @@ def find_guide(guides: Guides, robot: int) -> int:
                 rank = meets * MEETING + later * LATER + int(distance[target])
                 push(guides.keys, guides.nodes, size, rank, reached)
                 size += 1
+    return NONE
 
 
 @compiled
 def write_guide(guides: Guides, robot: int, found: int) -> None:
-    """Write the way that leads to a label."""
-    size = int(guides.crowd.distance[robot][int(guides.crowd.start[robot])]) + found % WIDTH + 1
+    """Write the way that leads to a label; without one there is no guide."""
+    least = int(guides.crowd.distance[robot][int(guides.crowd.start[robot])])
+    size = 0 if found == NONE else least + found % WIDTH + 1
     guides.size[robot] = size
     at = int(guides.first[robot]) + size
     while found != NONE:

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carp_optimized.crowds.crowd import FAR, GONE, Crowd, can_begin, crowd_of, is_stepwise, measure, ways_of
+from carp_optimized.crowds.crowd import GONE, Crowd, can_begin, crowd_of, is_stepwise, ways_of
+from carp_optimized.crowds.distances import measure
 from carp_optimized.crowds.improving import LONGER
 from carp_optimized.crowds.stays import Paths, no_paths, solution_along
 from carp_optimized.jit.compiling import compiled, entry
@@ -61,6 +62,7 @@ class Lacam(NamedTuple):
     crowd: Crowd
     step: Step
     nodes: Nodes
+    least: Ints
 
 
 lacam_at = dereference(Lacam)
@@ -71,7 +73,7 @@ def plans_by_steps(instance: Instance, steps: int = STEPS) -> tuple[Plan, ...] |
     if not is_stepwise(instance):
         return None
     crowd = crowd_of(instance)
-    measure(Native(crowd), np.arange(crowd.start.size, dtype=np.int32), 0, crowd.start.size, FAR)
+    measure(Native(crowd), np.arange(crowd.start.size, dtype=np.int32), 0, crowd.start.size)
     if not can_begin(crowd):
         return None
     search = Search(crowd)
@@ -88,7 +90,7 @@ class Search:
         """The crowd has been measured, and `can_begin`."""
         self.outcome = RUNNING
         self.paths: Paths | None = None
-        self._native = Native(Lacam(crowd, no_step(crowd, seed, guides), _no_nodes(crowd, ROOM)))
+        self._native = Native(Lacam(crowd, no_step(crowd, seed, guides), _no_nodes(crowd, ROOM), ways_of(crowd)))
         _place_root(self._native.fields)
 
     @property
@@ -103,9 +105,9 @@ class Search:
         while self.outcome == RUNNING and nodes.counts[TRIED] < last:
             self.outcome = search(self._native, last - int(nodes.counts[TRIED]))
             if self.outcome == FULL:
-                crowd, step, _ = self._native.fields
+                crowd, step, _, least = self._native.fields
                 nodes = _enlarged(crowd, nodes)
-                self._native = Native(Lacam(crowd, step, nodes))
+                self._native = Native(Lacam(crowd, step, nodes, least))
                 self.outcome = RUNNING
         if self.outcome == FOUND:
             self.paths = _paths(nodes)
@@ -148,7 +150,7 @@ def _enlarged(crowd: Crowd, nodes: Nodes) -> Nodes:
 
 def _place_root(lacam: Lacam) -> None:
     """The configuration at tick 0; robots with the longest ways come first."""
-    crowd, step, nodes = lacam
+    crowd, step, nodes, _ = lacam
     distance = ways_of(crowd)
     by_distance = np.argsort(-distance, kind="stable").astype(np.int32)
     present = by_distance if crowd.parks else by_distance[distance[by_distance] > 0]
@@ -368,16 +370,10 @@ def put_in_order(lacam: Lacam, node: int, before: Ints, present: int) -> int:
         robot = int(before[k])
         if places[robot] == crowd.goal[robot] and crowd.parks:
             place = count
-            way = way_of(crowd, robot)
-            while place > away and way > way_of(crowd, int(order[place - 1])):
+            way = int(lacam.least[robot])
+            while place > away and way > lacam.least[int(order[place - 1])]:
                 order[place] = order[place - 1]
                 place -= 1
             order[place] = robot
             count += 1
     return count
-
-
-@compiled
-def way_of(crowd: Crowd, robot: int) -> int:
-    """The length of the robot's way from its start."""
-    return int(crowd.distance[robot][int(crowd.start[robot])])

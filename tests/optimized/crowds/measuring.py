@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from carp_optimized.crowds.crowd import FAR, Crowd, crowd_of, measure
+from carp_optimized.crowds.crowd import Crowd, crowd_of
+from carp_optimized.crowds.distances import measure
 from carp_optimized.jit.references import Native
 from carp_spec import AfterGoal, Instance
 from carproof.generate import Fleet, Grid, grid_instance
@@ -19,6 +20,5 @@ def on_grid(side: int, robots: int, after_goal: AfterGoal = "park", seed: int = 
 def measured(instance: Instance) -> Crowd:
     """The crowd of the instance, in which the distances of all robots are known."""
     crowd = crowd_of(instance)
-    robots = np.arange(len(instance.robots), dtype=np.int32)
-    measure(Native(crowd), robots, 0, robots.size, FAR)
+    measure(Native(crowd), np.arange(crowd.start.size, dtype=np.int32), 0, crowd.start.size)
     return crowd

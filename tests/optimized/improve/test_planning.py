@@ -115,10 +115,11 @@ def test_robots_that_nobody_could_plan_do_not_keep_the_others_from_plans() -> No
     assert set(found.unplanned) == {"same start", "same goal"}
 
 
-def test_the_nearest_robots_are_planned_where_there_is_no_time_for_all() -> None:
-    instance = on_grid(60, 1200)
+@pytest.mark.parametrize("design", [5, 20])
+def test_the_nearest_robots_are_planned_where_there_is_no_time_for_all(design: int) -> None:
+    instance = on_grid(60, 1200, map=design)
     ticks = iter(range(10**9))
-    found = plan_crowd(instance, iterations=None, seconds=40, clock=lambda: float(next(ticks)))
+    found = plan_crowd(instance, iterations=None, seconds=60, clock=lambda: float(next(ticks)))
     assert judge(instance, found).valid
     assert 50 < len(found.plans) < 1200
     graph = instance.graph.resource

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 from tests.optimized.crowds.measuring import measured, on_grid
 
-from carp_optimized.crowds.crowd import Crowd
+from carp_optimized.crowds.crowd import Crowd, ways_of
 from carp_optimized.jit.compiling import entry
 from carp_optimized.jit.references import Native
 from carp_optimized.lacam.guides import SLACK, Guides, find_guides, guides_at, guides_of, uses_of
@@ -73,6 +73,15 @@ def test_guides_lead_along_edges_from_start_to_goal_and_are_little_longer_than_t
             assert (places[0], places[-1]) == (crowd.start[robot], crowd.goal[robot])
             assert all(target in targets(crowd, place) for place, target in pairwise(places))
             assert len(places) - 1 <= crowd.distance[robot][places[0]] + SLACK
+
+
+def test_there_is_no_guide_where_the_distance_is_an_estimate_that_is_too_low() -> None:
+    crowd = measured(on_grid(12, ROBOTS, "park"))
+    ways = ways_of(crowd)
+    crowd.distance[:] //= 4
+    *_, guides = guides_of(crowd, lambda: True)
+    sizes = {(ways[robot] - ways[robot] // 4 > SLACK, len(way(guides, robot)) > 0) for robot in range(ROBOTS)}
+    assert sizes == {(True, False), (False, True)}
 
 
 def test_uses_are_those_of_the_guides() -> None:
