@@ -20,7 +20,7 @@ from carp_optimized.crowds.crowd import Crowd
 from carp_optimized.crowds.cut_off import Back, is_cut_off, no_back
 from carp_optimized.crowds.stays import Paths, Stays, end_of, later_than
 from carp_optimized.jit.compiling import compiled
-from carp_optimized.jit.kinds import Ints, Longs
+from carp_optimized.jit.kinds import Ints, IntTable, Longs
 from carp_optimized.state.arrays import NEVER, NONE
 
 BUCKETS = 1 << 14
@@ -28,6 +28,8 @@ BUCKETS = 1 << 14
 PLACES = 7
 """Places that differ in these bits have their edges turned by other bits of the turn."""
 GENERATION, LABELS, LEAST, TOP, EXPANDED, TURN, GREED, EFFORT = range(8)  # the counts
+MARK, ARRIVE, BEFORE, PAID = range(4)
+"""What is known of a gap that is reached, side by side: on large maps it takes longer to fetch it than to use it."""
 MANY = 256
 """The gaps after which a query asks whether its goal is cut off."""
 WHOLE = 16
@@ -37,14 +39,12 @@ UNTIL_FOUND = 1 << 60
 
 
 class Query(NamedTuple):
-    """The scratch of a query: for each gap its arrival and the gap before, if it is marked; and the labels by bound.
+    """The scratch of a query: for each gap the arrival and the gap before, if it is marked; and the labels by bound.
 
-    The buckets with labels are among those from `counts[LEAST]` to `counts[TOP]`.
+    The buckets with labels are among those from `counts[LEAST]` to `counts[TOP]`. `PAID` is for soft queries alone.
     """
 
-    mark: Ints
-    arrive: Ints
-    before: Ints
+    reached: IntTable
     head: Ints
     gap: Ints
     tick: Ints
@@ -61,9 +61,7 @@ def no_query(stays: Stays) -> Query:
 def query_of(gaps: int, labels: int) -> Query:
     """The scratch for so many gaps and labels."""
     return Query(
-        mark=np.zeros(gaps, np.int32),
-        arrive=np.empty(gaps, np.int32),
-        before=np.empty(gaps, np.int32),
+        reached=np.zeros((gaps, 4), np.int32),
         head=np.full(BUCKETS, NONE, np.int32),
         gap=np.empty(labels, np.int32),
         tick=np.empty(labels, np.int32),
@@ -97,7 +95,7 @@ def find_path(crowd: Crowd, stays: Stays, query: Query, robot: int, latest: int,
         if label == NONE:
             break
         gap = int(query.gap[label])
-        if query.arrive[gap] != query.tick[label]:
+        if query.reached[gap][ARRIVE] != query.tick[label]:
             continue
         if stays.place[gap] == goal and (not crowd.parks or end_of(stays, gap) == NEVER):
             found = gap
@@ -144,7 +142,7 @@ def clear(query: Query) -> None:
 def expand(crowd: Crowd, stays: Stays, query: Query, robot: int, gap: int, least: int, latest: int) -> bool:
     """Reach all gaps that one move leads to from this one; `False` if there is no room for that many labels."""
     place = int(stays.place[gap])
-    soon = int(query.arrive[gap]) + 1
+    soon = int(query.reached[gap][ARRIVE]) + 1
     until = end_of(stays, gap)
     distance = crowd.distance[robot]
     begin = int(crowd.first[place])
@@ -167,8 +165,8 @@ def expand(crowd: Crowd, stays: Stays, query: Query, robot: int, gap: int, least
             end = int(stays.enter[into]) if into < last else NEVER
             # whoever left the target at this tick, and enters the place at it, would swap with the robot
             swaps = into > first and tick == free and tick == until and stays.robot[into - 1] == stays.robot[gap]
-            is_marked = query.mark[into] == query.counts[GENERATION]
-            if tick < end and not swaps and (not is_marked or tick < query.arrive[into]):
+            is_marked = query.reached[into][MARK] == query.counts[GENERATION]
+            if tick < end and not swaps and (not is_marked or tick < query.reached[into][ARRIVE]):
                 if query.counts[LABELS] == query.gap.size:
                     return False
                 reach(query, into, tick, gap, bucket_of(query, bound - least, rest))
@@ -192,9 +190,10 @@ def bucket_of(query: Query, late: int, rest: int) -> int:
 @compiled
 def reach(query: Query, gap: int, tick: int, before: int, bucket: int) -> None:
     """Note an arrival in a gap."""
-    query.mark[gap] = query.counts[GENERATION]
-    query.arrive[gap] = tick
-    query.before[gap] = before
+    reached = query.reached[gap]
+    reached[MARK] = query.counts[GENERATION]
+    reached[ARRIVE] = tick
+    reached[BEFORE] = before
     label = int(query.counts[LABELS])
     query.counts[LABELS] += 1
     query.gap[label] = gap
@@ -212,7 +211,7 @@ def write_path(stays: Stays, query: Query, found: int, paths: Paths, row: int) -
     gap = found
     while gap != NONE:
         visits += 1
-        gap = int(query.before[gap])
+        gap = int(query.reached[gap][BEFORE])
     if visits > paths.place[row].size:
         return False
     paths.size[row] = visits
@@ -220,6 +219,6 @@ def write_path(stays: Stays, query: Query, found: int, paths: Paths, row: int) -
     while gap != NONE:
         visits -= 1
         paths.place[row][visits] = stays.place[gap]
-        paths.enter[row][visits] = query.arrive[gap]
-        gap = int(query.before[gap])
+        paths.enter[row][visits] = query.reached[gap][ARRIVE]
+        gap = int(query.reached[gap][BEFORE])
     return True

@@ -8,14 +8,16 @@ which does no harm: whoever is met is planned again.
 
 from typing import NamedTuple
 
-import numpy as np
-
 from carp_optimized.crowds.crowd import FAR, Crowd
 from carp_optimized.crowds.sipp import (
+    ARRIVE,
+    BEFORE,
     EFFORT,
     EXPANDED,
     GENERATION,
     LABELS,
+    MARK,
+    PAID,
     Query,
     begin,
     bucket_of,
@@ -37,18 +39,17 @@ PRICE = 16
 class SoftQuery(NamedTuple):
     """The scratch of a query: gap 2 k of `labels` is gap k of a place's time, and gap 2 k + 1 is stay k: its parts.
 
-    `paid` are the ticks and prices until the arrival in a part, and `met` says how often each robot was met.
+    What is paid are the ticks and prices until the arrival in a part. `met` says how often each robot was met.
     """
 
     labels: Query
-    paid: Ints
     met: Ints
 
 
 def no_soft_query(stays: Stays, met: Ints) -> SoftQuery:
     """The scratch for these rows."""
     parts = 2 * stays.enter.size
-    return SoftQuery(query_of(parts, 2 * parts), np.empty(parts, np.int32), met)
+    return SoftQuery(query_of(parts, 2 * parts), met)
 
 
 @compiled
@@ -69,13 +70,14 @@ def find_soft_path(
         if label == NONE:
             break
         part = int(labels.gap[label])
-        if labels.mark[part] < 0:
+        if labels.reached[part][MARK] < 0:
             continue
         if stays.place[part // 2] == goal and (not crowd.parks or part == last_part(stays, goal)):
             found = part
             break
         labels.counts[EXPANDED] += 1
-        labels.mark[part] = -labels.mark[part]  # a later arrival of less price would come after those that follow
+        reached = labels.reached[part]
+        reached[MARK] = -reached[MARK]  # a later arrival of less price would come after those that follow
         if labels.counts[EXPANDED] > most or not expand_part(crowd, stays, query, robot, part, least, latest):
             break
     clear(labels)
@@ -124,8 +126,9 @@ def expand_part(crowd: Crowd, stays: Stays, query: SoftQuery, robot: int, part: 
     """Reach the next part, and all those to which a move leads; `False` if there is no room for that many labels."""
     place = int(stays.place[part // 2])
     distance = crowd.distance[robot]
-    soon = int(query.labels.arrive[part]) + 1
-    price = int(query.paid[part]) - int(query.labels.arrive[part])
+    reached = query.labels.reached[part]
+    soon = int(reached[ARRIVE]) + 1
+    price = int(reached[PAID]) - int(reached[ARRIVE])
     until = end_of_part(stays, part)
     if until < NEVER and (until + int(distance[place]) <= latest or distance[place] == 0):
         paid = until + price + price_of(stays, query, part + 1)
@@ -165,10 +168,11 @@ def part_at(stays: Stays, place: int, tick: int) -> int:
 @compiled
 def reach_part(query: SoftQuery, part: int, tick: int, paid: int, before: int, rest: int, least: int) -> None:
     """Note an arrival in a part, unless that was left, or has one that is as good."""
-    mark = int(query.labels.mark[part])
+    reached = query.labels.reached[part]
+    mark = int(reached[MARK])
     now = int(query.labels.counts[GENERATION])
-    if mark != -now and (mark != now or paid < query.paid[part]):
-        query.paid[part] = paid
+    if mark != -now and (mark != now or paid < reached[PAID]):
+        reached[PAID] = paid
         bucket = bucket_of(query.labels, paid + rest - least, rest)
         reach(query.labels, part, tick, before, bucket)
 
@@ -179,7 +183,7 @@ def write_soft_path(stays: Stays, query: SoftQuery, found: int, paths: Paths, ro
     visits = 0
     part = found
     while part != NONE:
-        before = int(query.labels.before[part])
+        before = int(query.labels.reached[part][BEFORE])
         visits += before == NONE or stays.place[before // 2] != stays.place[part // 2]
         part = before
     if visits > paths.place[row].size:
@@ -187,10 +191,10 @@ def write_soft_path(stays: Stays, query: SoftQuery, found: int, paths: Paths, ro
     paths.size[row] = visits
     part = found
     while part != NONE:
-        before = int(query.labels.before[part])
+        before = int(query.labels.reached[part][BEFORE])
         if before == NONE or stays.place[before // 2] != stays.place[part // 2]:
             visits -= 1
             paths.place[row][visits] = stays.place[part // 2]
-            paths.enter[row][visits] = query.labels.arrive[part]
+            paths.enter[row][visits] = query.labels.reached[part][ARRIVE]
         part = before
     return True
