@@ -27,9 +27,9 @@ from carp_spec import Instance, Solution
 LONG, MEASURING = 1 / 8, 0.7
 """The parts of the time in which all distances must be measured where estimates are as good, and where not."""
 NEAREST = 1 / 2
-"""Else the distances of the nearest robots are known after this part; the others are left out."""
+"""Else those of the nearest robots are found until this part is over; the others are left out."""
 LOADING = 4 * PART
-"""The robots after which it is looked whether measuring is too long: the machine code may have to be loaded first."""
+"""The robots after which it is decided: the machine code may have to be loaded first."""
 SAMPLE, SAMPLES, SLOWER = 5000, 4, 3
 """The least time counts that so many visits take to make; checking and making all takes this many times as long."""
 
@@ -123,27 +123,34 @@ def _is_measured(crowd: Crowd, timer: Clock) -> bool:
     for done in range(0, robots.size, PART):
         if done == PART:
             began = timer.spent
-        if done >= LOADING:
+        if done == LOADING:
             ends = timer.spent + (timer.spent - began) * (robots.size - done) / (done - PART)
-            if done == LOADING and ends > LONG * time and are_right(crowd, landmarks := landmarks_of(crowd)):
+            if ends > LONG * time and are_right(crowd, landmarks := landmarks_of(crowd)):
                 _of_nearest(crowd, timer, partial(estimate, native, Native(landmarks)))
                 return False
             if ends > MEASURING * time:
                 _of_nearest(crowd, timer, partial(measure, native))
                 break
+        if timer.spent > MEASURING * time:
+            _leave_out(crowd, robots[done:])
+            break
         measure(native, robots, done, min(done + PART, robots.size))
     return True
 
 
 def _of_nearest(crowd: Crowd, timer: Clock, find: Callable[[Ints, int, int], None]) -> None:
-    """Find the distances of robots, about the nearest first; those for which there is no time have no way."""
+    """Find the distances of robots, about the nearest first, as long as there is time for it."""
     order = np.argsort(near(crowd), kind="stable").astype(np.int32)
     for done in range(0, order.size, PART):
         if timer.spent > NEAREST * (timer.seconds or inf):
-            late = order[done:]
-            crowd.distance[late, crowd.start[late]] = FAR
+            _leave_out(crowd, order[done:])
             break
         find(order, done, min(done + PART, order.size))
+
+
+def _leave_out(crowd: Crowd, robots: Ints) -> None:
+    """Note that these robots have no way."""
+    crowd.distance[robots, crowd.start[robots]] = FAR
 
 
 def _paths(crowd: Crowd, timer: Clock, iterations: int | None, seed: int, advance: Advance) -> Paths:

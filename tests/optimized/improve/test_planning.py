@@ -1,6 +1,7 @@
 """Plans in a given time: they keep the law, never get worse, and come in time."""
 
 from dataclasses import replace
+from itertools import count
 from time import process_time
 from typing import Any
 
@@ -129,6 +130,18 @@ def test_the_nearest_robots_are_planned_where_there_is_no_time_for_all(design: i
         return abs((start.x or 0) - (goal.x or 0)) + abs((start.y or 0) - (goal.y or 0))
 
     assert max(way(plan.robot) for plan in found.plans) < min(sorted(map(way, found.unplanned))[len(found.plans) :])
+
+
+def test_those_measured_so_far_are_planned_where_measuring_takes_longer_than_expected() -> None:
+    looks = count()
+    slow = 35
+    found = plan_crowd(
+        on_grid(60, 1200, map=5),
+        iterations=None,
+        seconds=1000,
+        clock=lambda: look if (look := next(looks)) < slow else look + 700,
+    )
+    assert 50 < len(found.plans) < 1200
 
 
 def test_time_is_left_to_plan_some_robots_where_lacam_does_not_end(monkeypatch: pytest.MonkeyPatch) -> None:
