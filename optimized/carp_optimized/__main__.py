@@ -1,6 +1,8 @@
 """`python -m carp_optimized` compiles the planner, so that no later call has to; once done, it does nothing."""
 
 from carp_optimized.certifying import potentials
+from carp_optimized.crowds.crowd import crowd_of
+from carp_optimized.crowds.distances import are_right, landmarks_of
 from carp_optimized.execution.following import retime
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.planning import plan_crowd
@@ -45,6 +47,8 @@ def compile_all() -> None:
     potentials(PlannedFleet(Instance(graph, (with_stops,))), 0)
     siding = ResourceGraph((*graph.resources, Resource("d")), (*graph.edges, ("b", "d")))  # no order plans the two
     plan_crowd(Instance(siding, (Robot("r", "a", "c"), Robot("s", "c", "a"))), iterations=1, seconds=None)
+    crowd = crowd_of(instance)
+    are_right(crowd, landmarks_of(crowd))
     here = Plan("t", (Visit("c", 9, 10),))
     retime(instance, Solution((here,), ("t",), ("r", "s")), Trace(0, (Plan("t", ()),)))
     note_that_it_is_compiled("carp_optimized")

@@ -33,6 +33,6 @@ def test_robots_with_slow_places_are_planned_in_time() -> None:
 def test_robots_for_which_there_is_no_time_are_unplanned() -> None:
     instance = grid_instance(Grid(width=5, height=5), Fleet(robots=6), Traits(duration=Range(2, 2)))
     ticks = iter(range(10**9))
-    found = plan_within(instance, seconds=14, clock=lambda: float(next(ticks)))
+    found = plan_within(instance, seconds=24, clock=lambda: float(next(ticks)))
     assert 0 < len(found.unplanned) < 6
     assert judge(instance, found).valid

@@ -109,7 +109,8 @@ def near(crowd: Crowd) -> Ints:
 def landmarks_of(crowd: Crowd) -> Landmarks:
     """Places that are far from each other, and from the goal of the first robot."""
     goal = np.zeros(1 + LANDMARKS, np.int32)
-    goal[:1] = crowd.goal[:1]
+    if crowd.goal.size > 0:
+        goal[0] = crowd.goal[0]
     found = crowd._replace(start=0 * goal, goal=goal, distance=np.empty((goal.size, crowd.queue.size), np.int16))
     native, order = Native(found), np.arange(goal.size, dtype=np.int32)
     measure(native, order, 0, 1)
