@@ -14,7 +14,7 @@ import numpy as np
 
 import carp_optimized
 from carp_optimized.crowds.crowd import crowd_of
-from carp_optimized.crowds.distances import near
+from carp_optimized.crowds.distances import landmarks_of, near
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.annealing import BRIEF, anneal
 from carp_optimized.improve.holding import plan_holding_starts
@@ -100,5 +100,6 @@ def nearest_first(fleet: PlannedFleet) -> list[int]:
     if fleet.keeps_all_guides:
         ways = np.array([fleet.ticks_to_goal(robot) for robot in range(len(fleet.instance.robots))])
     else:
-        ways = near(crowd_of(fleet.instance)) * np.array([each.pace for each in fleet.instance.robots])
+        crowd = crowd_of(fleet.instance)
+        ways = near(crowd, landmarks_of(crowd)) * np.array([each.pace for each in fleet.instance.robots])
     return [int(robot) for robot in np.argsort(ways, kind="stable")]

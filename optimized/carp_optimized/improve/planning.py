@@ -65,7 +65,7 @@ def plan_crowd(
     apart = are_apart(crowd)
     rows, crowd = np.flatnonzero(apart), only(crowd, apart)
     timer.visit = time_of_visit(instance, clock, finish)
-    is_measured = _is_measured(crowd, timer)
+    is_measured = _find_distances(crowd, timer)
     has_way = ways_of(crowd) < FAR
     rows, crowd = rows[has_way], only(crowd, has_way)
     paths = _paths(crowd, timer, iterations, seed, advance)
@@ -91,7 +91,7 @@ def improve_crowd(
     timer.visit = time_of_visit(instance, clock)
     paths = _paths_of_plans(instance, solution)
     timer.reserve(int(paths.size.sum()))
-    _is_measured(crowd, timer)
+    _find_distances(crowd, timer)
     if (ways_of(crowd) == FAR).any():
         return solution
     paths = improved(crowd, [paths], None, timer, seed, advance)
@@ -112,10 +112,10 @@ def _paths_of_plans(instance: Instance, solution: Solution) -> Paths:
     return paths
 
 
-def _is_measured(crowd: Crowd, timer: Clock) -> bool:
-    """Whether the distances of robots that have ways are measured, and not estimated.
+def _find_distances(crowd: Crowd, timer: Clock) -> bool:
+    """Measure the distances of robots, or estimate them; whether they are measured.
 
-    Robots for which there is no time have none.
+    Robots for which there is no time have no way.
     """
     native = Native(crowd)
     robots = np.arange(crowd.start.size, dtype=np.int32)
@@ -125,12 +125,15 @@ def _is_measured(crowd: Crowd, timer: Clock) -> bool:
             began = timer.spent
         if done == LOADING:
             ends = timer.spent + (timer.spent - began) * (robots.size - done) / (done - PART)
-            if ends > LONG * time and are_right(crowd, landmarks := landmarks_of(crowd)):
-                _of_nearest(crowd, timer, partial(estimate, native, Native(landmarks)))
-                return False
-            if ends > MEASURING * time:
-                _of_nearest(crowd, timer, partial(measure, native))
-                break
+            if ends > LONG * time:
+                landmarks = landmarks_of(crowd)
+                order = np.argsort(near(crowd, landmarks), kind="stable").astype(np.int32)
+                if are_right(crowd, landmarks):
+                    _of_first(crowd, timer, order, partial(estimate, native, Native(landmarks)))
+                    return False
+                if ends > MEASURING * time:
+                    _of_first(crowd, timer, order, partial(measure, native))
+                    break
         if timer.spent > MEASURING * time:
             _leave_out(crowd, robots[done:])
             break
@@ -138,9 +141,8 @@ def _is_measured(crowd: Crowd, timer: Clock) -> bool:
     return True
 
 
-def _of_nearest(crowd: Crowd, timer: Clock, find: Callable[[Ints, int, int], None]) -> None:
-    """Find the distances of robots, about the nearest first, as long as there is time for it."""
-    order = np.argsort(near(crowd), kind="stable").astype(np.int32)
+def _of_first(crowd: Crowd, timer: Clock, order: Ints, find: Callable[[Ints, int, int], None]) -> None:
+    """Find the distances of robots in that order, as long as there is time for it."""
     for done in range(0, order.size, PART):
         if timer.spent > NEAREST * (timer.seconds or inf):
             _leave_out(crowd, order[done:])

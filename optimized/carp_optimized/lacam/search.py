@@ -150,8 +150,7 @@ def _enlarged(crowd: Crowd, nodes: Nodes) -> Nodes:
 
 def _place_root(lacam: Lacam) -> None:
     """The configuration at tick 0; robots with the longest ways come first."""
-    crowd, step, nodes, _ = lacam
-    distance = ways_of(crowd)
+    crowd, step, nodes, distance = lacam
     by_distance = np.argsort(-distance, kind="stable").astype(np.int32)
     present = by_distance if crowd.parks else by_distance[distance[by_distance] > 0]
     nodes.order[0, : present.size] = present
