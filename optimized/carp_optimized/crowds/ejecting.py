@@ -3,8 +3,12 @@
 Near the best sum, robots that are drawn hardly ever are those that must give way. So a delayed robot takes the earliest
 path that meets few others, and these wait. Each of them is planned again, through others if there is no other way,
 until nobody waits, or the sum cannot be kept. Who was put out of a path that was tried is dearer to meet.
+
+In half of the rounds the first robot met gives way before that: it must not be for some ticks where it was, there or
+some visits before. Robots that take their earliest paths in some order never share a delay like that.
 """
 
+from carp_optimized.crowds.neighbourhoods import visit_near
 from carp_optimized.crowds.sipp import EFFORT, TURN, UNTIL_FOUND, find_path
 from carp_optimized.crowds.soft_sipp import find_soft_path
 from carp_optimized.crowds.state import (
@@ -22,7 +26,7 @@ from carp_optimized.crowds.state import (
     take_out,
     take_out_again,
 )
-from carp_optimized.crowds.stays import arrival, met_at
+from carp_optimized.crowds.stays import arrival, drop_stay, end_of, later_than, met_at, put_stay
 from carp_optimized.jit.compiling import compiled
 from carp_optimized.neighbourhood.orders import choice
 from carp_optimized.neighbourhood.polishing import draw_raise
@@ -32,6 +36,8 @@ STEPS = 32
 """The paths that a round tries."""
 BETWEEN, THROUGH = 8, 16
 """The labels that a query between others, or through them, may expand for each step of the way, and some more."""
+NEAR, LONG = 6, 4
+"""Who gives way does so fewer than `2 ** NEAR` visits before the robots meet, for at most `2 ** (LONG - 1)` ticks."""
 
 
 @compiled
@@ -43,6 +49,8 @@ def eject(state: Rounds) -> bool:
     member = 0
     has_room = True
     steps = 0
+    if choice(state.stream, 2) == 0 and find_way_through(state, 0, raised):
+        has_room = give_way(state, raised)
     while has_room and member != NONE and steps < STEPS and plan_through(state, member, raised):
         has_room = put_in(state, member)
         member = one_that_waits(state)
@@ -68,21 +76,70 @@ def one_that_waits(state: Rounds) -> int:
 
 
 @compiled
+def give_way(state: Rounds, raised: int) -> bool:
+    """Plan the first robot that the path tried meets, kept away from where it was; `False` if a row of stays is full.
+
+    It waits if it finds no path. There is no further member if nobody is met, or only a robot that never moves.
+    """
+    visit = 0
+    size = int(state.tried.size[0])
+    while visit < size and met_at(state.crowd, state.stays, state.tried, 0, visit) == NONE:
+        visit += 1
+    if visit == size:
+        return True
+    robot = met_at(state.crowd, state.stays, state.tried, 0, visit)
+    tick = int(state.tried.enter[0][visit])
+    at = visit_near(state.paths, robot, int(state.tried.place[0][visit]), tick)
+    if at == NONE:  # they swap
+        at = visit_near(state.paths, robot, int(state.tried.place[0][visit - 1]), tick)
+    at = max(at - choice(state.stream, 1 << choice(state.stream, NEAR)), 1)
+    if at >= state.paths.size[robot]:
+        return True
+    let_wait(state, robot)
+    place = int(state.paths.place[robot][at])
+    closes = int(state.paths.enter[robot][at])
+    opens = closes + 1 + choice(state.stream, 1 << choice(state.stream, LONG))
+    opens = min(opens, end_of(state.stays, int(state.stays.first[place]) + later_than(state.stays, place, closes)))
+    if not put_stay(state.stays, place, closes, opens, NONE):
+        return False
+    is_found = find_way_between(state, 1, raised)
+    drop_stay(state.stays, place, closes)
+    return not is_found or put_in(state, 1)
+
+
+@compiled
+def latest_arrival(state: Rounds, member: int, raised: int) -> int:
+    """The tick by which a member must arrive: the first one earlier than before, and all so that the sum is kept."""
+    latest = latest_of(state, member, raised)
+    return min(latest, arrival(state.paths, int(state.members[0])) - 1) if member == 0 else latest
+
+
+@compiled
+def find_way_between(state: Rounds, member: int, raised: int) -> bool:
+    """Try a path for a member that meets nobody."""
+    robot = int(state.members[member])
+    state.query.counts[TURN] = draw_turn(state)
+    state.query.counts[EFFORT] = BETWEEN * (int(state.least[robot]) + 8)
+    latest = latest_arrival(state, member, raised)
+    return find_path(state.crowd, state.stays, state.query, robot, latest, state.tried, member)
+
+
+@compiled
+def find_way_through(state: Rounds, member: int, raised: int) -> bool:
+    """Try a path for a member that meets few others."""
+    robot = int(state.members[member])
+    state.soft.labels.counts[TURN] = draw_turn(state)
+    state.soft.labels.counts[EFFORT] = THROUGH * (int(state.least[robot]) + 16)
+    latest = latest_arrival(state, member, raised)
+    return find_soft_path(state.crowd, state.stays, state.soft, robot, latest, state.tried, member)
+
+
+@compiled
 def plan_through(state: Rounds, member: int, raised: int) -> bool:
     """Try a path for a member, and let those wait that it meets; `False` if the sum cannot be kept so."""
-    robot = int(state.members[member])
-    latest = latest_of(state, member, raised)
-    if member == 0:
-        latest = min(latest, arrival(state.paths, robot) - 1)
-    turn = draw_turn(state)
-    way = int(state.least[robot])
-    state.query.counts[TURN] = turn
-    state.query.counts[EFFORT] = BETWEEN * (way + 8)
-    if find_path(state.crowd, state.stays, state.query, robot, latest, state.tried, member):
+    if find_way_between(state, member, raised):
         return True
-    state.soft.labels.counts[TURN] = turn
-    state.soft.labels.counts[EFFORT] = THROUGH * (way + 16)
-    if not find_soft_path(state.crowd, state.stays, state.soft, robot, latest, state.tried, member):
+    if not find_way_through(state, member, raised):
         return False
     for visit in range(int(state.tried.size[member])):
         other = met_at(state.crowd, state.stays, state.tried, member, visit)

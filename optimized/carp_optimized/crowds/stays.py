@@ -152,23 +152,30 @@ def met_at(crowd: Crowd, stays: Stays, paths: Paths, row: int, visit: int) -> in
 def put(crowd: Crowd, stays: Stays, paths: Paths, row: int, robot: int) -> bool:
     """Add the stays of a path; `False` if a row of stays is full, and then none is added."""
     for visit in range(int(paths.size[row])):
-        place = int(paths.place[row][visit])
-        size = int(stays.size[place])
-        first = int(stays.first[place])
-        if first + size + 1 >= stays.first[place + 1]:
+        leave = leave_of(crowd, paths, row, visit)
+        if not put_stay(stays, int(paths.place[row][visit]), int(paths.enter[row][visit]), leave, robot):
             drop(stays, paths, row, visit)
             return False
-        enter = int(paths.enter[row][visit])
-        at = first + size
-        while at > first and stays.enter[at - 1] > enter:
-            stays.enter[at] = stays.enter[at - 1]
-            stays.leave[at] = stays.leave[at - 1]
-            stays.robot[at] = stays.robot[at - 1]
-            at -= 1
-        stays.enter[at] = enter
-        stays.leave[at] = leave_of(crowd, paths, row, visit)
-        stays.robot[at] = robot
-        stays.size[place] = size + 1
+    return True
+
+
+@compiled
+def put_stay(stays: Stays, place: int, enter: int, leave: int, robot: int) -> bool:
+    """Add a stay, unless the row is full; whether it is added."""
+    size = int(stays.size[place])
+    first = int(stays.first[place])
+    if first + size + 1 >= stays.first[place + 1]:
+        return False
+    at = first + size
+    while at > first and stays.enter[at - 1] > enter:
+        stays.enter[at] = stays.enter[at - 1]
+        stays.leave[at] = stays.leave[at - 1]
+        stays.robot[at] = stays.robot[at - 1]
+        at -= 1
+    stays.enter[at] = enter
+    stays.leave[at] = leave
+    stays.robot[at] = robot
+    stays.size[place] = size + 1
     return True
 
 
@@ -176,15 +183,20 @@ def put(crowd: Crowd, stays: Stays, paths: Paths, row: int, robot: int) -> bool:
 def drop(stays: Stays, paths: Paths, row: int, visits: int) -> None:
     """Remove the stays of the first visits of a path."""
     for visit in range(visits):
-        place = int(paths.place[row][visit])
-        last = int(stays.first[place]) + int(stays.size[place]) - 1
-        at = int(stays.first[place]) + later_than(stays, place, int(paths.enter[row][visit])) - 1
-        while at < last:
-            stays.enter[at] = stays.enter[at + 1]
-            stays.leave[at] = stays.leave[at + 1]
-            stays.robot[at] = stays.robot[at + 1]
-            at += 1
-        stays.size[place] -= 1
+        drop_stay(stays, int(paths.place[row][visit]), int(paths.enter[row][visit]))
+
+
+@compiled
+def drop_stay(stays: Stays, place: int, enter: int) -> None:
+    """Remove the stay that begins at the tick."""
+    last = int(stays.first[place]) + int(stays.size[place]) - 1
+    at = int(stays.first[place]) + later_than(stays, place, enter) - 1
+    while at < last:
+        stays.enter[at] = stays.enter[at + 1]
+        stays.leave[at] = stays.leave[at + 1]
+        stays.robot[at] = stays.robot[at + 1]
+        at += 1
+    stays.size[place] -= 1
 
 
 @compiled

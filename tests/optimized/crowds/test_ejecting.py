@@ -1,5 +1,7 @@
 """Rounds that clear the way of a robot: the sum never grows without a raise, and stays are those of the paths."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.optimized.crowds.measuring import measured, on_grid
@@ -10,10 +12,11 @@ from carp_optimized.crowds.rounds import GREEDY
 from carp_optimized.crowds.sipp import EFFORT, GREED, UNTIL_FOUND
 from carp_optimized.crowds.state import CHANCE, SIZE, TOTAL, Rounds, begin_round, rounds_at
 from carp_optimized.crowds.stays import no_paths, solution_along
+from carp_optimized.improve.planning import plan_crowd
 from carp_optimized.jit.compiling import entry
 from carp_optimized.jit.references import Native
 from carp_optimized.neighbourhood.polishing import SURE
-from carp_spec import AfterGoal, judge
+from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, judge
 
 ROBOTS, CROWDED, TRIES = 24, 60, 40
 
@@ -84,3 +87,12 @@ def test_a_raise_lets_the_sum_grow_and_the_best_paths_stay() -> None:
         assert judge(instance, solution_along(instance, instance.robots, improving.rounds.paths)).valid
     assert totals != sorted(totals, reverse=True)
     assert improving.best == total_of(improving.rounds.best) == min(totals)
+
+
+def test_a_robot_gives_way_where_both_are_late_in_the_best_plans() -> None:
+    edges = (("aside", "a"), ("a", "b"), ("b", "c"), ("b", "bay"), ("c", "d"))
+    robots = (Robot("past", "a", "d"), Robot("stops", "c", "b"))
+    instance = Instance(ResourceGraph(tuple(map(Resource, ("aside", "a", "b", "c", "d", "bay"))), edges), robots)
+    found = plan_crowd(replace(instance, after_goal="park"), iterations=400, seconds=None)
+    assert found is not None
+    assert [each.visits[-1].enter for each in found.solution.plans] == [4, 3]
