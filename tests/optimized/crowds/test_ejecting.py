@@ -1,7 +1,5 @@
 """Rounds that clear the way of a robot: the sum never grows without a raise, and stays are those of the paths."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from tests.optimized.crowds.measuring import measured, on_grid
@@ -91,8 +89,8 @@ def test_a_raise_lets_the_sum_grow_and_the_best_paths_stay() -> None:
 
 def test_a_robot_gives_way_where_both_are_late_in_the_best_plans() -> None:
     edges = (("aside", "a"), ("a", "b"), ("b", "c"), ("b", "bay"), ("c", "d"))
-    robots = (Robot("past", "a", "d"), Robot("stops", "c", "b"))
-    instance = Instance(ResourceGraph(tuple(map(Resource, ("aside", "a", "b", "c", "d", "bay"))), edges), robots)
-    found = plan_crowd(replace(instance, after_goal="park"), iterations=400, seconds=None)
+    graph = ResourceGraph(tuple(map(Resource, ("aside", "a", "b", "c", "d", "bay"))), edges)
+    instance = Instance(graph, (Robot("past", "a", "d"), Robot("stops", "c", "b")), after_goal="park")
+    found = plan_crowd(instance, iterations=400, seconds=None)
     assert found is not None
     assert [each.visits[-1].enter for each in found.solution.plans] == [4, 3]
