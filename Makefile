@@ -45,7 +45,7 @@ format: install
 docs: install
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet
 
-# In under a minute: lint, types, and the fastest tests of every package, with few examples.
+# In a minute or two: lint, types, and the fastest tests of every package, with few examples.
 quick: install
 	$(MAKE) --jobs 2 lint quick-tests
 

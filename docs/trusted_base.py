@@ -21,23 +21,23 @@ CHECK = "`check`: no rule is broken"
 VERDICTS: dict[str, tuple[tuple[str, ...], str]] = {
     CHECK: (("documents/decoding", "documents/fields", "documents/instances", "documents/solutions"), ""),
     "`check --footprint`: vehicles keep apart": (tuple(f"footprint/{each}" for each in FOOTPRINT), ""),
-    "`verify-bound`, without cuts": (BOUND, ""),
-    "`verify-bound`, with cuts": ((*BOUND, "bound/cuts", *ENCODER[:-1], "optimum/refutation"), ""),
-    "`verify-query` and `audit`": (("query/verify", "query/rules", "documents/query_certificates"), ""),
+    "`verify`: a bound without cuts": (BOUND, ""),
+    "`verify`: a bound with cuts": ((*BOUND, "bound/cuts", *ENCODER[:-1], "optimum/refutation"), ""),
+    "`verify`: a query; `audit`": (("query/verify", "query/rules", "documents/query_certificates"), ""),
     "with `--kernel`": (
         ("kernel", "documents/bounds"),
         "[the proved kernel](#the-proved-kernel), and not the law in Python",
     ),
-    "`verify-proof`, an optimum": (("optimum/proof", "plain_files", *ENCODER, "optimum/refutation"), ""),
-    "`verify-proof`, unsolvable by clauses": (
+    "`verify`: the proof of an optimum": (("optimum/proof", "plain_files", *ENCODER, "optimum/refutation"), ""),
+    "`verify`: unsolvable, by clauses": (
         ("optimum/proof", "plain_files", "optimum/unsolvable", *ENCODER, "optimum/refutation"),
         "",
     ),
-    "`verify-proof`, unsolvable otherwise": (
+    "`verify`: unsolvable, otherwise": (
         ("optimum/proof", "optimum/unsolvable", "optimum/joint_search", "optimum/rules"),
         "",
     ),
-    "`certify`: z3 agrees on capacity and exchange": (("certificate", "lemmas/smt"), "z3"),
+    "`check --z3`: z3 agrees on capacity and exchange": (("certificate", "lemmas/smt"), "z3"),
     "`theorems`: a lemma holds": (
         ("lemmas/engine", "lemmas/smt", "lemmas/vocabulary", "lemmas/derivation"),
         "z3, the argument by hand in the docstring",

@@ -170,7 +170,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     With --kernel the proved kernel decides whether plans break a rule, and whether each arrives as early as possible,
     at the levels sound, complete-in-context and context-optimal. carp_spec decides the rest: histories of robots under
-    way, and instances that forbid following.
+    way.
 
     Exit codes: 0 it conforms, 1 it does not, 2 bad usage, 3 undecided: no random case decided it. If interrupted, the
     command prints its findings so far.
