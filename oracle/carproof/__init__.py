@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from carp_spec import Fault as Fault
     from carp_spec import FixedPaths as FixedPaths
     from carp_spec import Greedy as Greedy
+    from carp_spec import Group as Group
     from carp_spec import Instance as Instance
     from carp_spec import LongestFirst as LongestFirst
     from carp_spec import Move as Move

@@ -80,6 +80,11 @@ def test_tables_are_judged_against_an_instance(carproof: Run) -> None:
         (json.dumps({**LEAGUE, "start": [[0, 0, "E"], [0, 1, "X"]]}), "league"),
         (json.dumps({**LEAGUE, "actualPaths": ["F,F", "F,J"]}), "league"),
         (json.dumps({**LEAGUE, "events": [7]}), "league"),
+        (json.dumps({**LEAGUE, "events": [[2, -1, 0, 1]], "tasks": [[0, 0, [0, 1]]]}), "league"),
+        (json.dumps({**LEAGUE, "events": [[2, 0, 0, -1]], "tasks": [[0, 0, [0, 1]]]}), "league"),
+        (json.dumps({**LEAGUE, "tasks": [[0, 0, 1], [0, 1, 1]]}), "league"),
+        (json.dumps({**LEAGUE, "tasks": [[0, 0, 0.7]]}), "league"),
+        (json.dumps({**LEAGUE, "teamSize": 3}), "league"),
         ("", "rhcr"),
         ("1\n0,0,0;1,0,2;\n", "rhcr"),
         ("robot,tick,resource\n", "csv"),
@@ -101,6 +106,11 @@ def test_bad_logs_are_refused_by_name(carproof: Run, log: str, format: str) -> N
         ("robot,tick,resource\n1,x,a\n", 2),
         ("robot,tick,resource\n1,2,a\n1,1,b\n", 3),
         ("robot,tick,resource\n1,0,6,1\n", 2),
+        ("robot,tick,resource\n1,0\n", 2),
+        ("robot,tick,resource\n\n\n1,x,a\n", 4),
+        ("robot,tick,resource,tick\n1,0,a,0\n", 1),
+        ("robot,tick,resource\r1,0,a\r1,x,a\r", 3),
+        ("robot,tick,resource\n1,0," + "a" * 200_000 + "\n", 2),
     ],
 )
 def test_bad_tables_are_refused_by_name_and_line(carproof: Run, table: str, line: int) -> None:

@@ -100,12 +100,38 @@ def test_requests_name_robots_starts_goals_and_releases() -> None:
     rows = b"robot,start,goal,release\nr1,a,c,5\nr2,b,c,\n"
     assert imported(OPENTCS, requests=rows).robots == (Robot("r1", "a", "c", 5), Robot("r2", "b", "c"))
     for rows, where in (
-        (b"robot,start\nr1,a\n", "orders.csv:2"),
+        (b"robot,start\nr1,a\n", "orders.csv:1"),
+        (b"", "orders.csv:1"),
+        (b"robot,start,goal,relase\nr1,a,c,5\n", "orders.csv:1"),
+        (b"robot,start,goal\n\nr1,a,z\n", "orders.csv:3"),
         (b"robot,start,goal\nr1,a,z\n", "orders.csv:2"),
         (b"robot,start,goal\nr1,a,b\nr1,b,c\n", "orders.csv:3"),
     ):
         with pytest.raises(Refusal, match=where):
             imported(OPENTCS, requests=rows, requests_file="orders.csv")
+
+
+def test_values_that_a_graph_has_for_all_edges_are_those_of_each_without_its_own() -> None:
+    slow = GRAPHML.replace('attr.name="speed" attr.type="double"/>', 'attr.name="speed"><default>0.1</default></key>')
+    assert [imported(slow, robots=0).graph.resource[each].duration for each in ("a -> b", "b -> c")] == [30, 8]
+
+
+def test_ids_of_edges_and_nodes_of_lif_may_be_equal_and_of_any_characters() -> None:
+    named = lif("1.0").replace('"edgeId": "ab"', '"edgeId": "a"')
+    assert "a -> b" in imported(named, robots=0).graph.resource
+    escaped = lif("1.0").replace('"a"', '"\\ud83d\\ude9a"')
+    assert "\N{DELIVERY TRUCK}" in imported(escaped, robots=0).graph.resource
+
+
+def test_a_robot_on_a_vertex_without_lanes_stays_one() -> None:
+    parked = BUILDING.replace('900, 0, ""]', '900, 0, "", {spawn_robot_name: [1, parked]}]')
+    assert [each.id for each in imported(parked).robots] == ["tiny", "parked"]
+
+
+@pytest.mark.parametrize("settings", [{"tick": Fraction(0)}, {"speed": Fraction(-1)}, {"tick": 1.0}, {"requests": "a"}])
+def test_wrong_settings_are_refused(settings: dict[str, object]) -> None:
+    with pytest.raises(Refusal, match=rf"\$\.{next(iter(settings))}"):
+        imported(OPENTCS, **settings)
 
 
 def test_degrees_become_lengths_on_the_ground() -> None:
@@ -180,6 +206,26 @@ UNKNOWN = {
             '<vehicle name="v1"', '<vehicle name="v1" length="900"'
         ),
         {"properties of points and paths": [10], "sizes of vehicles; --footprint sets one for all": [11]},
+    ),
+    "opentcs": (
+        OPENTCS.replace(' locked="true"', ' lockd="true"').replace("</model>", '<blok name="x"/>\n</model>'),
+        {"the field lockd": [10], "the element <blok>": [14]},
+    ),
+    "lif": (
+        lif("1.0").replace('"layoutId"', '"floor": 2, "layoutId"').replace("EdgeProperties", "EdgeProps"),
+        {"the field floor": [7], "the field vehicleTypeEdgeProps": [46, 56, 66]},
+    ),
+    "lif for two types": (
+        lif("1.0").replace('"maxSpeed": 1', '"maxSpeed": 1, "vehicleTypeId": "v"'),
+        {"edges that are not for all types of vehicles; here they are": [46, 56, 66]},
+    ),
+    "annotated": (
+        ANNOTATED.replace("start: a", "potentialGoals: [b], start: a") + "conflict: [1]\n",
+        {"the field potentialGoals": [17], "the field conflict": [18]},
+    ),
+    "links and edges": (
+        NODE_LINK.replace('"nodes"', '\n"edges": [{"source": "a", "target": "c"}], "nodes"'),
+        {"the field edges": [2]},
     ),
 }
 
@@ -277,6 +323,19 @@ BROKEN = {
     ),
     "lif 3": (lif("3.0"), 3, "the version must be 1, 0.11 as in"),
     "lif node": (lif("1.0").replace('"endNodeId": "b"', '"endNodeId": "q"', 1), 42, "'q' must be one of the layout"),
+    "point of an unknown kind": (OPENTCS.replace("HALT_POSITION", "HALT"), 4, "HALT_POSITION, PARK_POSITION, REPORT"),
+    "closed path of a name in use": (OPENTCS.replace('"ca"', '"bc"'), 10, "'bc' must be given once"),
+    "vehicle at two places": (
+        OPENTCS.replace("</vehicle>", '\n<property name="loopback:initialPosition" value="b"/></vehicle>'),
+        12,
+        "the position of a vehicle must be given once",
+    ),
+    "lif edge twice": (lif("1.0").replace('"edgeId": "bc"', '"edgeId": "ab"'), 53, "'ab' must be given once"),
+    "value twice": (
+        GRAPHML.replace('<data key="d1">0</data></node>', '<data key="d0">0</data></node>', 1),
+        5,
+        "given once",
+    ),
     "unfinished JSON": (nav2()[:-2], 86, "it must be JSON"),
     "conflict with itself": (ANNOTATED.replace("    - [1]\n", "    - [0]\n", 1), 12, "must be another of the 4 edges"),
     "too few conflicts": (ANNOTATED.replace("    - []\n", ""), 12, "conflicts of each of 4 edges, not 3"),

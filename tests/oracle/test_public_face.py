@@ -137,11 +137,14 @@ def test_an_array_that_is_no_grid_is_refused(free: Any, starts: Any, goals: Any,
 @pytest.mark.parametrize("directed", [False, True])
 def test_a_resource_graph_goes_to_networkx_and_back(directed: bool) -> None:
     resources = (Resource("a", 2, 3, 0, 1), Resource(7), Resource("c"))
-    instance = carproof.Instance(ResourceGraph(resources, (("c", "a"), ("a", 7)), directed), (Robot("r", "a", 7),))
+    groups = (carproof.Group("crossing", ("a", 7)),)
+    instance = carproof.Instance(
+        ResourceGraph(resources, (("c", "a"), ("a", 7)), directed, groups), (Robot("r", "a", 7),)
+    )
     graph = carproof.graph_of(instance)
     assert isinstance(graph, nx.DiGraph) == directed
     back = carproof.instance_from_networkx(graph, instance.robots, instance.after_goal)
-    assert (back.graph.resources, back.graph.moves) == (resources, instance.graph.moves)
+    assert (back.graph.resources, back.graph.moves, back.graph.groups) == (resources, instance.graph.moves, groups)
     assert (back.robots, back.after_goal) == (instance.robots, instance.after_goal)
 
 

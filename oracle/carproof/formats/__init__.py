@@ -14,6 +14,7 @@ from typing import Any
 from carp_spec import Instance, Refusal, Rule, Solution
 from carp_spec.inputs.values import require_instance, require_solution
 from carp_spec.rule import DESIGN
+from carp_spec.shapes import require_shape
 from carproof.formats import agent_paths, carproof_documents, lacam, libmultirobotplanning, mapf_tracker
 from carproof.formats.adapter import Adapter
 from carproof.formats.arrays import RIGHT_ARRAY, instance_from_array
@@ -59,8 +60,8 @@ ADAPTERS: Mapping[str, Adapter] = {
 
 CLEAR_FORMAT = Code(
     "adapter/format",
-    "A solution whose format is not named looks like one format; of those that it looks like, it is the one in which "
-    "every robot begins at its start, or it means the same in each.",
+    "A solution is text in UTF-8. If its format is not named, it looks like one; of those that it looks like, it is "
+    "the one in which every robot begins at its start, or it means the same in each.",
     DESIGN,
 )
 ADAPTER_RULES: tuple[Rule[..., Any] | Code, ...] = (
@@ -86,7 +87,8 @@ def read_foreign_solution(data: bytes, instance: Instance, file: str = "file", f
     Raises `Refusal` with file and line, also where two formats are possible or none is.
     """
     require_instance(instance)
-    return _adapter(format or format_of(data, instance, file)).read(_text(data), instance, file)
+    require_shape(data, bytes, file)
+    return _adapter(format or format_of(data, instance, file)).read(_text(data, file), instance, file)
 
 
 def write_foreign_solution(instance: Instance, solution: Solution, format: str) -> bytes:
@@ -98,7 +100,7 @@ def write_foreign_solution(instance: Instance, solution: Solution, format: str) 
 def format_of(data: bytes, instance: Instance, file: str = "file") -> str:
     """The format that a solution looks like; raises `Refusal` where two are possible or none is."""
     require_instance(instance)
-    text = _text(data)
+    text = _text(data, file)
     looks = _looks(text)
     possible = looks if len(looks) == 1 else _fitting(looks, text, instance)
     if len(possible) == 1:
@@ -126,11 +128,14 @@ def _adapter(format: str) -> Adapter:
 
 def looks_like_none(data: bytes) -> bool:
     """Whether the data look like no format at all."""
-    return not _looks(_text(data))
+    return not _looks(data.decode(errors="replace"))
 
 
-def _text(data: bytes) -> str:
-    return data.decode(errors="surrogateescape").replace("\r\n", "\n")
+def _text(data: bytes, file: str) -> str:
+    """The text; bytes that are not UTF-8 are kept in JSON alone, whose reader refuses them."""
+    is_json = data.lstrip().startswith(b"{")
+    text = data.decode(errors="surrogateescape") if is_json else CLEAR_FORMAT.text(data, file)
+    return text.replace("\r\n", "\n")
 
 
 def _looks(text: str) -> list[str]:

@@ -9,6 +9,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from carp_spec import AfterGoal, Instance, Refusal, Robot
+from carp_spec.inputs.values import require_instance
+from carp_spec.rule import is_between
 from carp_spec.shapes import require_shape
 from carproof.generate.grid import cell_edges, cell_graph, cell_id
 from carproof.generate.options import MOST_RESOURCES, Traits, size_is_bounded
@@ -119,6 +121,10 @@ def read_movingai(map: bytes, scenario: bytes, agents: int | None = None, after_
     """
     require_shape(map, bytes, "map")
     require_shape(scenario, bytes, "scenario")
+    if not (agents is None or is_between(agents, 0)):
+        raise Refusal(
+            "option", "$.agents", RIGHT_SCENARIO.id, f"it must be a whole number of at least 0, not {agents!r}"
+        )
     grid = read_map(map)
     return movingai_instance(grid, read_scenario(scenario, grid, agents), after_goal)
 
@@ -130,7 +136,9 @@ def movingai_instance(grid: GridMap, robots: Sequence[Robot], after_goal: AfterG
         message = f"the map must have at most {MOST_RESOURCES} passable cells, and has {len(cells)}"
         raise Refusal("limit", file, size_is_bounded.id, message)
     no_chance: Iterator[int] = iter(())
-    return Instance(cell_graph(cells, list(cell_edges(cells)), Traits(), no_chance), tuple(robots), after_goal)
+    instance = Instance(cell_graph(cells, list(cell_edges(cells)), Traits(), no_chance), tuple(robots), after_goal)
+    require_instance(instance)
+    return instance
 
 
 def _lines(data: bytes) -> list[str]:

@@ -1,7 +1,8 @@
 """Instances on graphs of networkx.
 
 A node is a resource, with the attributes `capacity` and `duration` (default 1), and `x` and `y`, or `pos` as a pair of
-them. An edge is a move, or two moves in an undirected graph. Other attributes are not read. Whole numbers may be those
+them. An edge is a move, or two moves in an undirected graph. The attribute `groups` of the graph, if it is there, is a
+tuple of `Group`. Other attributes are not read. Whole numbers may be those
 of NumPy. A node that is a tuple, such as `(3, 4)` of `networkx.grid_2d_graph`, is the resource `3,4`. With `park`, the
 default of `after_goal`, and no attributes, an instance is classical multi-agent path finding (MAPF).
 """
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from carp_spec import AfterGoal, Instance, Refusal, Resource, ResourceGraph, Robot
 from carp_spec.inputs.values import require_instance
+from carp_spec.model import Group
 from carp_spec.rule import DESIGN, Found, fault_rule, is_between
 
 if TYPE_CHECKING:
@@ -87,7 +89,8 @@ def instance_from_networkx(
     resources = tuple(_resource(node, attributes, scale) for node, attributes in graph.nodes(data=True))
     edges = tuple((_named(source), _named(target)) for source, target in graph.edges)
     asked = tuple(_robot(robot) for robot in robots)
-    instance = Instance(ResourceGraph(resources, edges, graph.is_directed()), asked, after_goal)
+    groups = tuple(_group(group) for group in graph.graph.get("groups", ()))
+    instance = Instance(ResourceGraph(resources, edges, graph.is_directed(), groups), asked, after_goal)
     try:
         require_instance(instance)
     except Refusal as refusal:
@@ -99,7 +102,7 @@ def graph_of(instance: Instance) -> "nx.Graph[Any]":
     """The resource graph as a graph of networkx, from which `instance_from_networkx` makes the same moves.
 
     It is a `DiGraph` if the edges are directed. Nodes have `capacity` and `duration`, and `x` and `y`
-    if they have a position.
+    if they have a position; the graph has `groups` if there are some.
     """
     import networkx as nx  # noqa: PLC0415 - slow to load
 
@@ -109,6 +112,8 @@ def graph_of(instance: Instance) -> "nx.Graph[Any]":
         place = {name: value for name, value in (("x", each.x), ("y", each.y)) if value is not None}
         graph.add_node(each.id, capacity=each.capacity, duration=each.duration, **place)
     graph.add_edges_from(instance.graph.edges)
+    if instance.graph.groups:
+        graph.graph["groups"] = instance.graph.groups
     return graph
 
 
@@ -120,6 +125,10 @@ def _plain(value: Any) -> Any:  # noqa: ANN401 - whatever stands in a graph
 def _named(node: Any) -> Any:  # noqa: ANN401 - a node; if it is none, a rule of instances says so
     """The resource of a node."""
     return ",".join(map(str, node)) if isinstance(node, tuple) else _plain(node)
+
+
+def _group(group: Any) -> Any:  # noqa: ANN401 - if it is no group, `document/shape` says so
+    return replace(group, resources=tuple(map(_named, group.resources))) if type(group) is Group else group
 
 
 def _robot(robot: Any) -> Any:  # noqa: ANN401 - if it is no robot, `document/shape` says so

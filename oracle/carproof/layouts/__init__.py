@@ -13,7 +13,7 @@ from carproof.layouts import lif, nav2, open_rmf, opentcs, roadmaps
 from carproof.layouts.layout import Layout, Note, Reader
 from carproof.layouts.located import RIGHT_LAYOUT, read_tree
 from carproof.layouts.making import instance_of
-from carproof.layouts.settings import RIGHT_SETTINGS, Settings
+from carproof.layouts.settings import RIGHT_SETTINGS, Settings, require_settings
 
 __all__ = ["LAYOUT_RULES", "READERS", "Imported", "Note", "Reader", "Settings", "import_layout"]
 
@@ -42,8 +42,9 @@ def import_layout(
 ) -> Imported:
     """Make an instance of a layout in the format named or, if none is, in the one that it looks like.
 
-    Raises `Refusal` with file and line.
+    Raises `Refusal` with file and line, or for wrong settings.
     """
+    require_settings(settings)
     name, layout = read_layout(data, file, format)
     return Imported(instance_of(layout, settings), name, layout.notes)
 
@@ -60,4 +61,7 @@ def read_layout(data: bytes, file: str = "layout", format: str | None = None) ->
     elif format not in READERS:
         message = f"there is no format {format!r}; the formats are {', '.join(READERS)}"
         raise Refusal("option", "$.format", RIGHT_SETTINGS.id, message)
-    return format, READERS[format].read(tree)
+    reader = READERS[format]
+    layout = reader.read(tree)
+    layout.note_unread(tree, reader.features, reader.silent)
+    return format, layout

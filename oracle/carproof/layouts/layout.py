@@ -3,7 +3,8 @@
 Lengths and positions are whole millimetres, speeds are millimetres a second.
 """
 
-from collections.abc import Callable, Container, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import isqrt
@@ -11,6 +12,8 @@ from math import isqrt
 from carproof.layouts.located import LARGEST, Tree
 
 NO_FEATURES: Mapping[str, str] = {}
+SILENT = frozenset(("<>", "text", "xmlns", "xmlns:xsi", "xsi:schemaLocation"))
+"""Of XML, what says nothing of a layout."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +75,7 @@ class Layout:
     """What a reader has found so far.
 
     `holds_ends`: who is on a lane holds both its ends too. `places` has, of points that are one place on the floor, the
-    first. `straight` has the strips of straight lanes by the places of their ends.
+    first. `straight` has the strips of straight lanes by the places of their ends. `passed` has the values noted whole.
     """
 
     tree: Tree
@@ -84,6 +87,7 @@ class Layout:
     left_out: dict[str, list[int]] = field(default_factory=dict)
     places: dict[str, str] = field(default_factory=dict)
     straight: dict[frozenset[str], str] = field(default_factory=dict)
+    passed: set[int] = field(default_factory=set)
 
     @property
     def notes(self) -> tuple[Note, ...]:
@@ -94,12 +98,25 @@ class Layout:
         """Note a feature that is not expressed, if it is there and not the usual value, which says nothing."""
         if at is not None and at.value not in ([], {}, "", None, usual):
             self.left_out.setdefault(feature, []).append(at.line)
+            self.passed.add(id(at))
 
-    def note_others(self, thing: Tree, known: Container[str], features: Mapping[str, str] = NO_FEATURES) -> None:
-        """Note the fields that are not known, by their features or, where there are none, by their names."""
-        for name, value in thing.fields.items():
-            if name not in known:
-                self.note(features.get(name, f"the field {name}"), value)
+    def note_unread(self, thing: Tree, features: Mapping[str, str], silent: AbstractSet[str]) -> None:
+        """Note all fields that the reader did not ask for, by their features or, where there are none, by their names.
+
+        Those that are silent say nothing of routes. What is noted, and was not asked for a field, is passed over whole.
+        """
+        if id(thing) in self.passed and not thing.asked:
+            return
+        if isinstance(thing.value, list):
+            for each in thing.value:
+                self.note_unread(each, features, silent)
+        elif isinstance(thing.value, dict):
+            for name, each in thing.value.items():
+                if not thing.is_unread(name):
+                    self.note_unread(each, features, silent)
+                elif name not in silent | SILENT:
+                    kind = "element" if name.startswith("<") else "field"
+                    self.note(features.get(name, f"the {kind} {name}"), each)
 
     def require_points(self, at: Tree, *ids: str) -> None:
         """Raise `Refusal` where one of the points is not of the layout."""
@@ -195,9 +212,14 @@ class Layout:
 
 @dataclass(frozen=True, slots=True)
 class Reader:
-    """A format of layouts: how it is recognised, and how it is read."""
+    """A format of layouts: how it is recognised, and how it is read.
+
+    Fields that `read` does not ask for are noted by their `features`, or else by their names, but for `silent` ones.
+    """
 
     name: str
     description: str
     looks_like: Callable[[Tree], bool]
     read: Callable[[Tree], Layout]
+    features: Mapping[str, str] = field(default_factory=dict)
+    silent: AbstractSet[str] = frozenset()

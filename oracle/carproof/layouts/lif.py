@@ -16,6 +16,7 @@ from carproof.layouts.located import METRE, Tree
 
 NODES = ("vehicleTypeNodeProperties", "mobileRobotTypeNodeProperties")
 EDGES = ("vehicleTypeEdgeProperties", "mobileRobotTypeEdgeProperties")
+TYPES = ("vehicleTypeId", "mobileRobotTypeId")
 LEFT_OUT = {
     "actions": "actions of nodes and edges",
     "loadRestriction": "restrictions by load",
@@ -34,8 +35,14 @@ LEFT_OUT = {
 }
 HEIGHTS = ("minHeight", "maxHeight", "minimumLoadHandlingDeviceHeight", "maximumMobileRobotHeight")
 LEFT_OUT |= dict.fromkeys(HEIGHTS, "limits of height")
-KNOWN = {"vehicleTypeId", "mobileRobotTypeId", "orientationType", "maxSpeed", "maximumSpeed", "trajectory"}
-KNOWN.add("physicalLineGuidedProperty")
+SILENT = {
+    *("projectIdentification", "creator", "exportTimestamp", "lifVersion", "orientationType"),
+    *(f"layout{each}" for each in ("Name", "Version", "Description", "LevelId")),
+    *(f"{thing}{each}" for thing in ("node", "edge", "origin") for each in ("Name", "Description", "Descriptor")),
+    *("originId", "mapId", "mapDescription", "degree", "knotVector", "weight"),
+    *(f"station{each}" for each in ("Name", "Description", "Height", "Position")),
+}
+"""What says nothing of routes."""
 
 
 def _looks_like(tree: Tree) -> bool:
@@ -55,18 +62,45 @@ def read(tree: Tree) -> Layout:
     else:
         layouts = [each for origin in tree["origins"].entries for each in origin["layouts"].entries]
     layout = Layout(tree)
-    stations = [(each, station) for each in layouts for station in each.all("stations")]
-    served = {node.quoted_text for _, station in stations for node in station["interactionNodeIds"].entries}
+    stations = [station for each in layouts for station in each.all("stations")]
+    _require_once(layouts, "layoutId")
+    _require_once(stations, "stationId")
+    served = {node.quoted_text for station in stations for node in station["interactionNodeIds"].entries}
     _nodes(layout, layouts, served)
-    for _, station in stations:
+    for station in stations:
         for node in station["interactionNodeIds"].entries:
             if node.quoted_text not in layout.points:
                 raise node.refuse(f"the node {node.quoted_text!r} must be one of the layout")
         layout.note("stations; their nodes are where vehicles stand", station)
-    for each in layouts:
-        for edge in each["edges"].entries:
-            _edge(layout, edge)
+    edges = [edge for each in layouts for edge in each["edges"].entries]
+    _require_once(edges, "edgeId")
+    for edge in edges:
+        _edge(layout, edge)
+    _note_types(layout, edges)
     return layout
+
+
+def _require_once(things: Sequence[Tree], field: str) -> None:
+    """Raise `Refusal` where two things of a kind have one id."""
+    seen: set[str] = set()
+    for id in (each[field] for each in things):
+        if id.quoted_text in seen:
+            raise id.refuse(f"the {field} {id.shown} must be given once")
+        seen.add(id.quoted_text)
+
+
+def _note_types(layout: Layout, edges: Sequence[Tree]) -> None:
+    """Note the edges that are not for all types of vehicles: those for which an edge has properties may use it."""
+    allowed = [{each.get(*TYPES) for each in _all(edge, EDGES)} for edge in edges]
+    names = [{None if type is None else type.value for type in types} for types in allowed]
+    for edge, types in zip(edges, names, strict=True):
+        if types and types != set().union(*names):
+            layout.note("edges that are not for all types of vehicles; here they are", edge.get(*EDGES))
+
+
+def _all(thing: Tree, names: Sequence[str]) -> list[Tree]:
+    found = thing.get(*names)
+    return [] if found is None else found.entries
 
 
 def _nodes(layout: Layout, layouts: Sequence[Tree], served: AbstractSet[str]) -> None:
@@ -87,17 +121,16 @@ def _nodes(layout: Layout, layouts: Sequence[Tree], served: AbstractSet[str]) ->
 
 def _types(layout: Layout, thing: Tree, names: tuple[str, ...]) -> list[Tree]:
     """The properties of each type of vehicle."""
-    found = thing.get(*names)
-    types = [] if found is None else found.entries
+    types = _all(thing, names)
     if len(types) > 1:
-        layout.note("differences between types of vehicles; lanes are open to all, at the lowest speed", found)
+        layout.note("differences between types of vehicles; lanes are open to all, at the lowest speed", types[1])
     for each in types:
-        layout.note_others(each, KNOWN, LEFT_OUT)
+        each.get(*TYPES)
     return types
 
 
 def _edge(layout: Layout, edge: Tree) -> None:
-    ends = edge["startNodeId"].quoted_text, edge["endNodeId"].quoted_text
+    name, ends = edge["edgeId"].quoted_text, (edge["startNodeId"].quoted_text, edge["endNodeId"].quoted_text)
     speeds: list[Fraction | None] = []
     lengths: list[Fraction | None] = []
     for each in _types(layout, edge, EDGES):
@@ -118,7 +151,7 @@ def _edge(layout: Layout, edge: Tree) -> None:
         layout.note("the way up and down between maps; it takes a tick unless its length is given", edge)
     layout.lane(
         edge,
-        edge["edgeId"].quoted_text,
+        None if name in layout.points else name,
         ends,
         level=not stays,
         speed=min((each for each in speeds if each), default=None),
@@ -137,4 +170,6 @@ def _polygon(curve: Tree) -> Fraction:
     return Fraction(total)
 
 
-READER = Reader("lif", "the Layout Interchange Format (LIF) of VDMA, versions 1 and 2", _looks_like, read)
+READER = Reader(
+    "lif", "the Layout Interchange Format (LIF) of VDMA, versions 1 and 2", _looks_like, read, LEFT_OUT, SILENT
+)

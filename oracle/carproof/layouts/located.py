@@ -7,7 +7,7 @@ import io
 import json
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from types import NoneType
 from typing import Any, TypeAlias, cast
@@ -35,6 +35,8 @@ _NULL = ("", "~", "null", "Null", "NULL")
 _WHOLE = re.compile(r"0|-?[1-9][0-9]*")
 _NUMBER = re.compile(r"[+-]?(?:\d{1,40}(?:\.\d{0,40})?|\.\d{1,40})(?:[eE][+-]?\d{1,2})?")
 
+_ESCAPE = re.compile(r"\\(?:(u[dD][89abAB][0-9a-fA-F]{2}\\u[dD][c-fC-F][0-9a-fA-F]{2})|.)", re.DOTALL)
+
 Value: TypeAlias = "str | list[Tree] | dict[str, Tree] | None"
 
 
@@ -42,13 +44,15 @@ Value: TypeAlias = "str | list[Tree] | dict[str, Tree] | None"
 class Tree:
     """A value: text, a list, a mapping, or null. The children of an element of XML are lists named `<tag>`.
 
-    A text that is `quoted`, in YAML or JSON, is neither a number nor true, false or null.
+    A text that is `quoted`, in YAML or JSON, is neither a number nor true, false or null. A mapping knows the names of
+    the fields that it was `asked` for.
     """
 
     file: str
     line: int
     value: Value
     quoted: bool = False
+    asked: set[str] | None = field(default=None, compare=False, repr=False)
 
     def refuse(self, message: str) -> Refusal:
         """The refusal of this value."""
@@ -56,12 +60,31 @@ class Tree:
 
     @property
     def fields(self) -> Mapping[str, "Tree"]:
-        """The fields of a mapping; none where there is nothing."""
+        """All fields of a mapping; none where there is nothing."""
+        return {name: self._fields[name] for name in [*self._fields] if self._has(name)}
+
+    @property
+    def _fields(self) -> Mapping[str, "Tree"]:
         if isinstance(self.value, dict):
             return self.value
         if self.value in (None, "", []):
             return {}
         raise self.refuse("it must be a mapping")
+
+    def _has(self, name: str) -> bool:
+        """Whether there is a field, which counts as asked for."""
+        if self.asked is not None:
+            self.asked.add(name)
+        return name in self._fields
+
+    @property
+    def attributes(self) -> dict[str, "Tree"]:
+        """The attributes of an element of XML."""
+        return {name: each for name, each in self._fields.items() if not name.startswith("<") and self._has(name)}
+
+    def is_unread(self, name: str) -> bool:
+        """Whether nobody asked for a field."""
+        return self.asked is not None and name not in self.asked
 
     @property
     def entries(self) -> list["Tree"]:
@@ -138,9 +161,9 @@ class Tree:
 
     def __getitem__(self, name: str) -> "Tree":
         """The field of the name, which there must be."""
-        if name not in self.fields:
+        if not self._has(name):
             raise self.refuse(f"it must have {name}")
-        return self.fields[name]
+        return self._fields[name]
 
     def first(self, count: int, missing: str, *, most: int | None = None) -> list["Tree"]:
         """The first entries, of which there must be so many, and no more than `most`."""
@@ -150,11 +173,11 @@ class Tree:
 
     def get(self, *names: str) -> "Tree | None":
         """The first of these fields that there is."""
-        return next((self.fields[name] for name in names if name in self.fields), None)
+        return next((self._fields[name] for name in names if self._has(name)), None)
 
     def says(self, name: str) -> Value:
         """The value of a field, `None` if it is absent."""
-        return self.fields[name].value if name in self.fields else None
+        return self._fields[name].value if self._has(name) else None
 
     def metres(self, *names: str) -> Fraction | None:
         """The first of these fields that there is in mm, a number of metres above 0; `None` without one."""
@@ -163,7 +186,7 @@ class Tree:
 
     def all(self, name: str) -> list["Tree"]:
         """The entries of a field, none if it is absent."""
-        return self.fields[name].entries if name in self.fields else []
+        return self._fields[name].entries if self._has(name) else []
 
 
 def read_tree(data: bytes, file: str) -> Tree:
@@ -171,18 +194,20 @@ def read_tree(data: bytes, file: str) -> Tree:
     whole = Tree(file, 1, "")
     if len(data) > MOST_BYTES:
         raise whole.refuse(f"it must have at most {MOST_BYTES // 2**20} MiB")
-    try:
-        text = data.decode()
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise Tree(file, line, "").refuse("it must be UTF-8") from None
+    text = RIGHT_LAYOUT.text(data, file)
     start = text.lstrip("\ufeff \t\r\n")[:1]
     if start == "<":
         return _xml(data, file)
     if start == "{":
+        text = text.removeprefix("\ufeff")
         _require_json(text, file)
-        text = text.replace("\t", " ")
+        text = _ESCAPE.sub(_unescaped, text.replace("\t", " "))
     return _yaml(text, file)
+
+
+def _unescaped(escape: re.Match[str]) -> str:
+    """A character beyond 16 bits, which JSON escapes in two halves and YAML does not."""
+    return escape[0] if escape[1] is None else str(json.loads(f'"{escape[0]}"'))
 
 
 def _require_json(text: str, file: str) -> None:
@@ -246,7 +271,7 @@ def _yaml(text: str, file: str) -> Tree:  # noqa: C901, PLR0915 - one branch for
                     anchors[anchor] = (tree, 1)
             elif kind in ("SequenceStart", "MappingStart"):
                 value: Value = [] if kind == "SequenceStart" else {}
-                stack.append(_Open(Tree(file, line, value), anchor, None, 1))
+                stack.append(_Open(Tree(file, line, value, asked=set()), anchor, None, 1))
                 if len(stack) > DEEPEST:
                     raise stack[-1].tree.refuse(f"the file must have at most {DEEPEST} levels")
             elif kind in ("SequenceEnd", "MappingEnd"):
@@ -285,7 +310,7 @@ def _xml(data: bytes, file: str) -> Tree:
             nonlocal values
             line = self._locator.getLineNumber() or 1  # type: ignore[attr-defined]
             fields = {key: Tree(file, line, value) for key, value in attrs.items()}
-            element = Tree(file, line, {"<>": Tree(file, line, name), **fields})
+            element = Tree(file, line, {"<>": Tree(file, line, name), **fields}, asked=set())
             values += 1 + len(fields)
             if values > MOST_VALUES or len(stack) > DEEPEST:
                 raise element.refuse(f"the file must have at most {MOST_VALUES} values and {DEEPEST} levels")

@@ -4,14 +4,13 @@ A point takes a tick. A lane takes its length by the speed, in ticks, rounded up
 middle of its ends.
 """
 
-import csv
-import io
 from collections.abc import Iterator
 from fractions import Fraction
 
 from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
 from carp_spec.inputs.values import require_instance
 from carp_spec.model import Group
+from carproof.csv_rows import rows_of
 from carproof.generate import Fleet
 from carproof.generate.fleet import random_robots
 from carproof.generate.options import ends_suffice, refuse_wrong_options
@@ -21,6 +20,8 @@ from carproof.layouts.settings import RIGHT_SETTINGS, Settings
 from carproof.layouts.turning import with_headings
 
 DEFAULT_SPEED = Fraction(1000)
+COLUMNS = ("robot", "start", "goal")
+"""Of requests."""
 
 
 def instance_of(layout: Layout, settings: Settings) -> Instance:
@@ -144,15 +145,8 @@ def _requested(layout: Layout, data: bytes, file: str) -> Iterator[Robot]:
     def refuse(line: int, message: str) -> Refusal:
         return Refusal("document", f"{file}:{line}", RIGHT_SETTINGS.id, message)
 
-    try:
-        reader = csv.DictReader(io.StringIO(data.decode("utf-8-sig")), strict=True)
-        rows = [(reader.line_num, row) for row in reader]
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise refuse(1, f"it must be CSV in UTF-8: {error}") from None
     seen: set[str] = set()
-    for line, row in rows:
-        if any(row.get(name) is None for name in ("robot", "start", "goal")) or None in row:
-            raise refuse(line, "the row must have the columns robot, start and goal, and perhaps release")
+    for line, row in rows_of(RIGHT_SETTINGS.text(data, file), file, RIGHT_SETTINGS, COLUMNS, ("release",)):
         if row["robot"] in seen:
             raise refuse(line, f"the robot {row['robot']!r} must be given once")
         seen.add(row["robot"])

@@ -12,8 +12,7 @@ from carproof.layouts.located import METRE, Tree
 
 WHOLE = 100
 LINES = ("LineString", "MultiLineString")
-KNOWN = {"id", "startid", "endid", "frame", "metadata"}
-LIMITS = {"abs_speed_limit", "speed_limit"}
+SILENT = {"type", "name", "crs", "date_generated", "coordinates"}
 LEFT_OUT = {
     "operations": "operations at nodes and edges",
     "cost": "costs of edges",
@@ -38,11 +37,9 @@ def read(tree: Tree) -> Layout:
             x, y = each["geometry"]["coordinates"].first(2, "a position must have x and y")
             layout.point(each, properties["id"].name, (METRE * x.number, METRE * y.number))
             layout.note("frames of nodes other than map", properties.get("frame"), usual="map")
+            properties.get("metadata")
         elif kind.value not in LINES:
             raise kind.refuse(f"the type must be Point, LineString or MultiLineString, not {kind.shown}")
-        layout.note_others(properties, KNOWN, LEFT_OUT)
-        if "metadata" in properties.fields:
-            layout.note_others(properties["metadata"], LIMITS if kind.value in LINES else (), LEFT_OUT)
     for each in features:
         if each["geometry"]["type"].value in LINES:
             _edge(layout, each["properties"])
@@ -53,19 +50,19 @@ def _edge(layout: Layout, edge: Tree) -> None:
     metadata = edge.get("metadata") or Tree(edge.file, edge.line, {})
     share = metadata.get("speed_limit")
     ends = edge["startid"].name, edge["endid"].name
+    name, limit = edge["id"].name, metadata.metres("abs_speed_limit")
     if ends[0] == ends[1]:
         layout.note("edges from a node to itself", edge)
         return
-    name = edge["id"].name
     is_new = name not in layout.lanes and name not in layout.points
     layout.note("ids that are given twice; such an edge is named by its ends", None if is_new else edge)
     layout.lane(
         edge,
         name if is_new else None,
         ends,
-        speed=metadata.metres("abs_speed_limit"),
+        speed=limit,
         share=None if share is None else min(share.positive / WHOLE, Fraction(1)),
     )
 
 
-READER = Reader("nav2", "a graph of Nav2's route server, GeoJSON", _looks_like, read)
+READER = Reader("nav2", "a graph of Nav2's route server, GeoJSON", _looks_like, read, LEFT_OUT, SILENT)

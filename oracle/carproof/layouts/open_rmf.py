@@ -45,6 +45,14 @@ LEFT_OUT_AT_VERTICES = {
 }
 
 
+SILENT = {
+    *("name", "building_name", "reference_level_name", "graphs", "parameters", "crowd_sim"),
+    *("walls", "floors", "drawing", "models", "layers", "fiducials", "features", "constraints", "physical_cameras"),
+    *("elevation", "x_meters", "y_meters", "flattened_x_offset", "flattened_y_offset", "measurements"),
+}
+"""Fields of buildings and levels that say nothing of where robots may go."""
+
+
 Groups = dict[str, list[tuple[Tree, str]]]
 Place = tuple[Fraction, Fraction]
 Onto = Callable[[Fraction, Fraction], Place]
@@ -61,7 +69,7 @@ def read(tree: Tree) -> Layout:
     if system is not None and system.value not in ("reference_image", "cartesian_meters", "wgs84"):
         message = f"the coordinate system must be reference_image, cartesian_meters or wgs84, not {system.shown}"
         raise system.refuse(message)
-    is_drawn = "building_name" not in tree.fields and (system is None or system.value == "reference_image")
+    is_drawn = tree.get("building_name") is None and (system is None or system.value == "reference_image")
     layout, groups = Layout(tree), Groups()
     onto: Onto = _in_metres if system is None or system.value != "wgs84" else _around(levels.values())
     scale = Fraction(0)
@@ -216,11 +224,10 @@ def _note_others(layout: Layout, options: Mapping[str, Tree], known: set[str], f
 
 
 def _remove_unused(layout: Layout, used: set[str]) -> None:
-    """Vertices without lanes are corners of walls and floors."""
+    """Vertices without lanes are corners of walls and floors, unless a robot is there."""
+    used |= {each.start for each in layout.vehicles.values()}
     for name in [each for each in layout.points if each not in used]:
         del layout.points[name]
-    for name in [each.id for each in layout.vehicles.values() if each.start not in layout.points]:
-        del layout.vehicles[name]
 
 
-READER = Reader("open-rmf", "a building or navigation graph of Open-RMF, YAML", _looks_like, read)
+READER = Reader("open-rmf", "a building or navigation graph of Open-RMF, YAML", _looks_like, read, {}, SILENT)

@@ -6,10 +6,28 @@ nor is a direction with a speed of 0. A vehicle allocates a path with the point 
 frees what lies behind when it has arrived. So who is on a path holds both its ends.
 """
 
+import re
+from collections.abc import Set as AbstractSet
+
 from carproof.layouts.layout import Layout, Reader
 from carproof.layouts.located import Tree, elements
 
-VERSIONS = ("0.0.4", "0.0.5", "6.", "7.")
+VERSIONS = re.compile(r"0\.0\.[45]|[67](\.\d+)*")
+KINDS = ("HALT_POSITION", "PARK_POSITION", "REPORT_POSITION")
+NAMED = ("point", "path", "locationType", "location", "block", "vehicle")
+SPEEDS = "speeds of vehicles; --speed sets one for all"
+LEFT_OUT = {
+    "<property>": "properties",
+    "maxVelocity": SPEEDS,
+    "maxReverseVelocity": SPEEDS,
+}
+SILENT = {
+    *(f"<{each}Layout>" for each in ("point", "path", "location", "block", "vehicle", "visual")),
+    *(name for axis in "XYZ" for name in (f"position{axis}", f"{axis.lower()}Position")),
+    *("name", "locationNamePrefix", "<locationType>", "<visualLayout>"),
+    *(f"energyLevel{each}" for each in ("Critical", "Good", "FullyRecharged", "SufficientlyRecharged")),
+}
+"""What says nothing of routes."""
 
 
 def _looks_like(tree: Tree) -> bool:
@@ -19,40 +37,69 @@ def _looks_like(tree: Tree) -> bool:
 def read(tree: Tree) -> Layout:
     """Read a plant model."""
     version = tree["version"]
-    if not version.text.startswith(VERSIONS):
+    if VERSIONS.fullmatch(version.text) is None:
         raise version.refuse(f"the version must be 0.0.4, 0.0.5, 6 or 7, not {version.shown}")
     layout = Layout(tree, holds_ends=True)
+    kinds = _names(tree)
     served = {link["point"].text for location in elements(tree, "location") for link in elements(location, "link")}
     for point in elements(tree, "point"):
-        name, kind = point["name"].text, point.says("type")
-        x, y = (point.get(each, other) or point[each] for each, other in _PLACES)
-        layout.point(point, name, (x.number, y.number), stands=kind == "PARK_POSITION" or name in served)
-        if kind == "REPORT_POSITION":
-            layout.note("report positions, at which vehicles may not halt", point)
-        layout.note("properties of points and paths", point.get("<property>"))
-        layout.note("vehicle envelopes of points", point.get("<vehicleEnvelope>"))
-        layout.note("bounding boxes that vehicles must fit at points", point.get("<maxVehicleBoundingBox>"))
-        layout.note("orientations at points", point.get("vehicleOrientationAngle"), usual="NaN")
+        for each in elements(point, "outgoingPath"):
+            _require_named(each["name"], kinds["path"], "path")
+        _point(layout, point, served)
     paths = {path["name"].text: _path(layout, path) for path in elements(tree, "path")}
-    locations = {location["name"].text for location in elements(tree, "location")}
     for location in elements(tree, "location"):
+        if kinds["locationType"]:
+            _require_named(location["type"], kinds["locationType"], "type of locations")
         for link in elements(location, "link"):
             layout.require_points(link, link["point"].text)
         layout.note("locations; the points that they are linked to are where vehicles stand", location)
     for block in elements(tree, "block"):
-        _block(layout, block, paths, locations)
+        _block(layout, block, paths, kinds["location"])
     for vehicle in elements(tree, "vehicle"):
         _vehicle(layout, vehicle)
     return layout
 
 
+def _names(tree: Tree) -> dict[str, set[str]]:
+    """The names of each kind of element; no two elements share one."""
+    found: dict[str, set[str]] = {kind: set() for kind in NAMED}
+    for kind, names in found.items():
+        for each in elements(tree, kind):
+            name = each["name"].text
+            if any(name in others for others in found.values()):
+                raise each.refuse(f"the name {name!r} must be given once")
+            names.add(name)
+    return found
+
+
+def _require_named(name: Tree, names: set[str], what: str) -> None:
+    if name.text not in names:
+        raise name.refuse(f"it must be the name of a {what}, and {name.shown} is none")
+
+
 _PLACES = (("positionX", "xPosition"), ("positionY", "yPosition"))
+
+
+def _point(layout: Layout, point: Tree, served: AbstractSet[str]) -> None:
+    """Add a point; vehicles stand at park positions and where a location is served."""
+    name, kind = point["name"].text, point.says("type")
+    if kind not in (None, *KINDS):
+        raise point["type"].refuse(f"the type must be {', '.join(KINDS)}, not {point['type'].shown}")
+    x, y = (point.get(each, other) or point[each] for each, other in _PLACES)
+    layout.point(point, name, (x.number, y.number), stands=kind == "PARK_POSITION" or name in served)
+    if kind == "REPORT_POSITION":
+        layout.note("report positions, at which vehicles may not halt", point)
+    layout.note("properties of points and paths", point.get("<property>"))
+    layout.note("vehicle envelopes of points", point.get("<vehicleEnvelope>"))
+    layout.note("bounding boxes that vehicles must fit at points", point.get("<maxVehicleBoundingBox>"))
+    layout.note("orientations at points", point.get("vehicleOrientationAngle"), usual="NaN")
 
 
 def _path(layout: Layout, path: Tree) -> tuple[str, ...]:
     """Add a path, and return its lanes; none if it is locked."""
     name, source, target = (path[each].text for each in ("name", "sourcePoint", "destinationPoint"))
     forward, backward = (path[each].number for each in ("maxVelocity", "maxReverseVelocity"))
+    length = path["length"].positive
     if min(forward, backward) < 0:
         raise path.refuse("the speeds of a path must not be below 0")
     layout.note("properties of points and paths", path.get("<property>"))
@@ -62,7 +109,6 @@ def _path(layout: Layout, path: Tree) -> tuple[str, ...]:
     if (locked is not None and locked.is_true) or not (forward or backward):
         layout.require_points(path, source, target)
         return ()
-    length = path["length"].positive
     if forward:
         return layout.lane(
             path,
@@ -110,15 +156,23 @@ def _block(layout: Layout, block: Tree, paths: dict[str, tuple[str, ...]], locat
 
 def _vehicle(layout: Layout, vehicle: Tree) -> None:
     """Add a vehicle, if the file says where it is; other vehicles are left to `--robots`."""
-    layout.note("speeds of vehicles; --speed sets one for all", vehicle.get("maxVelocity"))
     layout.note("sizes of vehicles; --footprint sets one for all", vehicle.get("<boundingBox>", "length"))
     start = [
         each["value"] for each in elements(vehicle, "property") if each["name"].value == "loopback:initialPosition"
     ]
+    if len(start) > 1:
+        raise start[1].refuse("the position of a vehicle must be given once")
     if start:
         layout.vehicle(vehicle, vehicle["name"].text, start[0].text)
     else:
         layout.note("vehicles without a position", vehicle)
 
 
-READER = Reader("opentcs", "a plant model of openTCS, XML of the versions 0.0.4, 0.0.5, 6 and 7", _looks_like, read)
+READER = Reader(
+    "opentcs",
+    "a plant model of openTCS, XML of the versions 0.0.4, 0.0.5, 6 and 7",
+    _looks_like,
+    read,
+    LEFT_OUT,
+    SILENT,
+)

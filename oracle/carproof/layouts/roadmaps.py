@@ -11,8 +11,7 @@ from fractions import Fraction
 from carproof.layouts.layout import Layout, Reader
 from carproof.layouts.located import METRE, Tree, elements
 
-OF_NODES = {"id", "x", "y", "pos"}
-OF_EDGES = {"id", "source", "target", "key", "length", "speed"}
+SILENT = {"multigraph", "graph", "id", "key", "for", "attr.type"}
 
 
 def _looks_annotated(tree: Tree) -> bool:
@@ -84,7 +83,7 @@ def _looks_plain(tree: Tree) -> bool:
 def read_plain(tree: Tree) -> Layout:
     """Read a graph."""
     layout = Layout(tree)
-    graphml = "<>" in tree.fields
+    graphml = tree.get("<>") is not None
     nodes, edges, directed = _graphml(tree) if graphml else _node_link(tree)
 
     def name(at: Tree) -> str:
@@ -94,11 +93,11 @@ def read_plain(tree: Tree) -> Layout:
         pos = node.get("pos")
         at = _place(pos) if pos is not None else (METRE * node["x"].number, METRE * node["y"].number)
         layout.point(node, name(node["id"]), at)
-        layout.note_others(node, OF_NODES)
+        layout.note_unread(node, {}, SILENT)
     for edge in edges:
-        layout.note_others(edge, OF_EDGES)
         speed, ends = edge.metres("speed"), (name(edge["source"]), name(edge["target"]))
         layout.lane(edge, None, ends, speed=speed, length=edge.metres("length"), back=not directed)
+        layout.note_unread(edge, {}, SILENT)
     return layout
 
 
@@ -108,20 +107,29 @@ def _node_link(tree: Tree) -> tuple[list[Tree], list[Tree], bool]:
 
 
 def _graphml(tree: Tree) -> tuple[list[Tree], list[Tree], bool]:
-    """The nodes and edges as mappings of their attributes' names."""
-    names = {key["id"].text: key["attr.name"] for key in elements(tree, "key")}
+    """The nodes and edges as mappings of their attributes' names, with what the keys have as defaults."""
+    keys = {key["id"].text: key for key in elements(tree, "key")}
     graphs = list(elements(tree, "graph"))
     if len(graphs) != 1:
         raise tree.refuse(f"the file must have one graph, not {len(graphs)}")
 
     def plain(thing: Tree) -> Tree:
-        fields = {name: value for name, value in thing.fields.items() if not name.startswith("<")}
+        own = thing.attributes
+        given: dict[str, Tree] = {}
         for each in elements(thing, "data"):
-            if each["key"].text not in names:
-                raise each.refuse(f"the key {each['key'].text!r} must be one of the file")
-            name, value = names[each["key"].text].text, each.get("text")
-            fields[f"data {name}" if name in thing.fields else name] = value or Tree(each.file, each.line, "")
-        return Tree(thing.file, thing.line, fields)
+            key = each["key"].text
+            if key not in keys or key in given:
+                raise each.refuse(f"the key {key!r} must be one of the file, and given once")
+            given[key] = each
+        for id, declared in keys.items():
+            if declared.says("for") in (thing.says("<>"), "all", None):
+                for each in elements(declared, "default"):
+                    given.setdefault(id, each)
+        fields = {**own}
+        for id, each in given.items():
+            name, value = keys[id]["attr.name"].text, each.get("text")
+            fields[f"data {name}" if name in own else name] = value or Tree(each.file, each.line, "")
+        return Tree(thing.file, thing.line, fields, asked=set())
 
     kind = graphs[0]["edgedefault"]
     if kind.value not in ("directed", "undirected"):
@@ -133,4 +141,4 @@ def _graphml(tree: Tree) -> tuple[list[Tree], list[Tree], bool]:
 ANNOTATED = Reader(
     "annotated-roadmap", "a roadmap of libMultiRobotPlanning with its conflicts, YAML", _looks_annotated, read_annotated
 )
-PLAIN = Reader("roadmap", "a graph with positions in GraphML or networkx's JSON", _looks_plain, read_plain)
+PLAIN = Reader("roadmap", "a graph with positions in GraphML or networkx's JSON", _looks_plain, read_plain, {}, SILENT)

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from carp_spec import AfterGoal, Refusal
 from carp_spec.rule import DESIGN
+from carp_spec.shapes import require_shape
 from carp_verify.footprint.rules import Footprint
 from carproof.input_rules import Code
 
@@ -42,6 +43,15 @@ class Settings:
     footprint: Footprint | None = None
     turning: Fraction | None = None
     requests_file: str = "requests"
+
+
+def require_settings(settings: Settings) -> None:
+    """Raise `Refusal` for values of other types, and unless the tick, the speed and the time of a turn are above 0."""
+    require_shape(settings, Settings)
+    for name in ("tick", "speed", "turning"):
+        value = getattr(settings, name)
+        if value is not None and value <= 0:
+            raise Refusal("option", f"$.{name}", RIGHT_SETTINGS.id, f"it must be above 0, and is {value}")
 
 
 def seconds(text: str, name: str = "tick") -> Fraction:

@@ -28,7 +28,7 @@ def read_log(data: bytes, instance: Instance, format: str, file: str = "log") ->
     if format == "trace":
         return read_trace(data)
     if format == "csv":
-        return table.read(data, instance, file)
+        return table.read(RIGHT_LOG.text(data, file), instance, file)
     width = 1 + max((each.x or 0 for each in instance.graph.resources), default=0)
     return trace_of(instance, _cells(data, format, width, file))
 
@@ -53,4 +53,4 @@ def _cells(data: bytes, format: str, width: int, file: str) -> CellLog:
     if format not in CELL_LOGS:
         message = f"a log on a map must be one of {', '.join(CELL_LOGS)}, not {format}"
         raise Refusal("option", "$.from", RIGHT_LOG.id, message)
-    return CELL_LOGS[format][0](data.decode(errors="replace"), width, file)
+    return CELL_LOGS[format][0](RIGHT_LOG.text(data, file), width, file)

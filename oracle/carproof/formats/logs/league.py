@@ -6,7 +6,7 @@ task, errands done], and tasks [task, release, [row, column, row, column, ...]].
 Source: Input_Output_Format.md of the Start-Kit of MAPF-Competition, and the archive of its best solutions.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -30,8 +30,9 @@ class Output(msgspec.Struct, frozen=True):
 
     start: list[tuple[int, int, str]]
     actualPaths: list[str]  # noqa: N815 - as in the file
-    events: list[Any] = []
-    tasks: list[tuple[Any, ...]] = []
+    teamSize: int | None = None  # noqa: N815 - as in the file
+    events: list[list[Any]] = []
+    tasks: list[tuple[int, int, list[int] | int]] = []
 
 
 def read(text: str, width: int, file: str) -> CellLog:
@@ -41,6 +42,8 @@ def read(text: str, width: int, file: str) -> CellLog:
         output = msgspec.json.decode(text, type=Output)
     except (msgspec.DecodeError, RecursionError) as error:
         raise RIGHT_LOG.refuse(file, f"it must be an output of the League of Robot Runners: {error}") from error
+    if output.teamSize not in (None, len(output.start)):
+        raise RIGHT_LOG.refuse(f"{file}: $.teamSize", f"it must be {len(output.start)}, the number of starts")
     if len(output.actualPaths) != len(output.start):
         message = (
             f"there must be a path for each of {len(output.start)} starts, and there are {len(output.actualPaths)}"
@@ -55,13 +58,8 @@ def read(text: str, width: int, file: str) -> CellLog:
             raise RIGHT_LOG.refuse(f"{file}: $.actualPaths[{number}]", message)
         walks.append(_walk((column, row), HEADINGS.index(heading), path[::2]))
     stops: list[list[Cell]] = [[] for _ in walks]
-    try:
-        for robot, cell in _served(output.events, {task[0]: task for task in output.tasks}):
-            stops[robot].append(cell)
-    except (LookupError, TypeError, ValueError) as error:
-        raise RIGHT_LOG.refuse(
-            f"{file}: $.events", "each event must name a robot, a task, and how much of it is done"
-        ) from error
+    for robot, cell in _served(output, file):
+        stops[robot].append(cell)
     return CellLog(walks, stops)
 
 
@@ -76,17 +74,36 @@ def _walk(start: Cell, heading: int, actions: str) -> "npt.NDArray[np.int32]":
     return np.cumsum(np.vstack([np.array([start], np.int32), steps]), axis=0, dtype=np.int32)
 
 
-def _served(events: Sequence[Any], tasks: dict[Any, tuple[Any, ...]]) -> Iterator[tuple[int, Cell]]:
+def _served(output: Output, file: str) -> Iterator[tuple[int, Cell]]:
     """The cells served by each robot, in the order of time."""
-    for number, event in enumerate(events):
-        if event and isinstance(event[0], int):
-            _, robot, task, done = event
-            places = tasks[task][2]
-            if done:
-                row, column = places[2 * done - 2], places[2 * done - 1]
-                yield robot, (int(column), int(row))
-        else:
-            for task, _, what in event:
-                if what == "finished":
-                    _, row, column = tasks[task]
-                    yield number, (int(column), int(row))
+    errands = {task: _errands(rest) for task, *rest in output.tasks}
+    if len(errands) < len(output.tasks):
+        raise RIGHT_LOG.refuse(f"{file}: $.tasks", "a task must be given once")
+    for number, event in enumerate(output.events):
+        message = "each event must name a robot, a task, and how many of its errands are done"
+        try:
+            done = [*_done(number, event, errands)]
+        except msgspec.ValidationError:
+            raise RIGHT_LOG.refuse(f"{file}: $.events[{number}]", message) from None
+        for robot, task, count in done:
+            if not (0 <= robot < len(output.start) and task in errands and 0 <= count <= len(errands[task])):
+                raise RIGHT_LOG.refuse(f"{file}: $.events[{number}]", message)
+            if count:
+                yield robot, errands[task][count - 1]
+
+
+def _done(number: int, event: list[Any], errands: Mapping[int, Sequence[Cell]]) -> Iterator[tuple[int, int, int]]:
+    """The robot, the task and how many of its errands are done: of one event, or of all those of the robot `number`."""
+    if event and isinstance(event[0], int):
+        yield msgspec.convert(event, tuple[int, int, int, int])[1:]
+        return
+    for task, _, what in msgspec.convert(event, list[tuple[int, int, str]]):
+        if what == "finished":
+            yield number, task, len(errands.get(task, ()))
+
+
+def _errands(task: Sequence[Any]) -> Sequence[Cell]:
+    """The cells of a task, from what stands behind its number."""
+    release_or_row, places = task
+    numbers = places if isinstance(places, list) else [release_or_row, places]
+    return [*zip(numbers[1::2], numbers[::2], strict=False)]

@@ -7,11 +7,11 @@ may be added.
 
 import csv
 import re
-from collections.abc import Mapping
 from io import StringIO
 
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
 from carp_spec.rule import DESIGN
+from carproof.csv_rows import named, rows_of
 from carproof.formats.adapter import Adapter, first_line
 from carproof.formats.plans.checks import ids_by_text, require_lawful
 from carproof.formats.plans.services import stops_in
@@ -32,27 +32,19 @@ RIGHT_TABLE = Code(
 def read(text: str, instance: Instance, file: str) -> Solution:
     """Read a table; ids that the instance does not have are left to the rules of plans."""
     robots, resources = ids_by_text(instance, RIGHT_TABLE)
-    rows = csv.DictReader(StringIO(text.removeprefix("\ufeff")))
-    if not {*COLUMNS} <= {*(rows.fieldnames or ())}:
-        raise RIGHT_TABLE.refuse(f"{file}:1", f"the line must name the columns {', '.join(COLUMNS)}")
     visits: dict[RobotId, list[Visit]] = {}
-    for number, row in enumerate(rows, start=2):
-        require_bounded(number, file)
-        enter, leave = ((row[name] or "").strip() for name in ("enter", "leave"))
-        robot, resource = _named(row["robot"] or "", robots), _named(row["resource"] or "", resources)
+    for line, row in rows_of(text, file, RIGHT_TABLE, COLUMNS):
+        require_bounded(line, file)
+        enter, leave = (row[name].strip() for name in ("enter", "leave"))
+        robot, resource = named(row["robot"], robots), named(row["resource"], resources)
         if "" in (robot, resource) or not _TICK.fullmatch(enter) or not (leave == "" or _TICK.fullmatch(leave)):
             message = (
                 "the row must have a robot, a resource, and whole numbers of ticks, the last of which may be left out"
             )
-            raise RIGHT_TABLE.refuse(f"{file}:{number}", message)
+            raise RIGHT_TABLE.refuse(f"{file}:{line}", message)
         visit = Visit(resource, int(enter), int(leave) if leave else None)
         visits.setdefault(robot, []).append(visit)
     return Solution.of(instance, (Plan(robot, tuple(each)) for robot, each in visits.items()))
-
-
-def _named(text: str, ids: Mapping[str, RobotId]) -> RobotId:
-    """The id that prints like the text, or else like the text without blanks around it."""
-    return ids.get(text, ids.get(text.strip(), text.strip()))
 
 
 def write(instance: Instance, solution: Solution) -> str:

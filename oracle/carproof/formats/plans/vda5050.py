@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from fractions import Fraction
 from hashlib import sha256
-from typing import Any
+from typing import Any, cast
 
 from carp_spec import Instance, Plan, Refusal, RobotId, Solution
 from carp_spec.execution.dependencies import dependencies
 from carp_spec.inputs.values import require_solution
-from carp_spec.rule import DESIGN, rule
+from carp_spec.rule import DESIGN, is_between, rule
 from carproof.formats.plans.checks import ids_by_text, require_lawful
 from carproof.formats.plans.services import stops_in
 from carproof.input_rules import Code
@@ -57,7 +57,8 @@ def settings_are_right(settings: OrderSettings) -> bool:
     quantities: tuple[object, ...] = (settings.tick, settings.unit)
     texts: tuple[object, ...] = (settings.map_id, settings.manufacturer)
     return (
-        all(type(each) is int and each >= 0 for each in (settings.at, settings.since) if each is not None)
+        is_between(settings.at, 0)
+        and (settings.since is None or is_between(settings.since, 0))
         and (settings.since is None or settings.since < settings.at)
         and settings.version in VERSIONS.values()
         and all(isinstance(each, Fraction) and each > 0 for each in quantities)
@@ -77,9 +78,10 @@ def write_orders(instance: Instance, solution: Solution, settings: OrderSettings
     then. Raises `Refusal` if the solution is malformed or breaks a rule.
     """
     require_solution(instance, solution)
-    if not settings_are_right(settings):
+    if not (isinstance(cast("object", settings), OrderSettings) and settings_are_right(settings)):
         message = (
-            "at must be at least 0, since less than at, the tick and the unit above 0, and the version a known one"
+            "at must be at least 0 and before the year 10,000, since less than at, the tick and the unit above 0, and "
+            "the version a known one"
         )
         raise Refusal("option", "$.orders", settings_are_right.id, message)
     require_lawful(instance, solution)
