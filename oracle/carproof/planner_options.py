@@ -21,6 +21,8 @@ def planner_named(name: object, options: Mapping[str, object]) -> Planner:
         meant = f"did you mean {near[0]}? The" if near else "the"
         message = f"there is no planner {name!r}; {meant} planners are {', '.join(PLANNERS)}"
         raise Refusal("option", "$.planner", options_are_right.id, message)
+    if not isinstance(cast("object", options), Mapping):
+        raise Refusal("option", "$.options", options_are_right.id, f"it must map names to values, not {options!r}")
     known = [field.name for field in fields(PLANNERS[name])]
     for option in options:
         if option not in known:

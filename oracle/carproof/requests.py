@@ -25,7 +25,12 @@ SOUND_PLANS = Code(
     "the plan alone. A robot that the solution does not name counts as unplanned.",
     DESIGN,
 )
-POSITIVE_LIMIT = Code("request/limit", "The limit of a search, in seconds or steps, is a number above 0.", DESIGN)
+POSITIVE_LIMIT = Code(
+    "request/limit",
+    "The limit of a search, in seconds or steps, is a number above 0. Functions for optima, bounds and gaps also take "
+    "0, and end at once. Of processes there are one or two.",
+    DESIGN,
+)
 PAST_LOG = Code("log/now", "Nothing in a log happens after its tick now.", DESIGN)
 REQUEST_RULES: tuple[Code, ...] = (KNOWN_ROBOT, TICK, SOUND_PLANS, POSITIVE_LIMIT, PAST_LOG)
 

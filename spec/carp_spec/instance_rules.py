@@ -14,8 +14,15 @@ def _wrong_ids(path: str, entries: Sequence[Resource | Robot | Group]) -> Found:
         here = f"{path}[{position}].id"
         if not (is_whole(entry.id) or isinstance(entry.id, str)):
             yield here, f"the id must be a string or a whole number, not {entry.id!r}"
+        elif isinstance(entry.id, str) and not entry.id.isascii() and _has_half_a_character(entry.id):
+            yield here, f"the id must be text that UTF-8 can express, not {entry.id!r}"
         elif first_at.setdefault(entry.id, position) < position:
             yield here, f"{entry.id!r} is the id of entry {first_at[entry.id]} too; ids must be unique"
+
+
+def _has_half_a_character(text: str) -> bool:
+    """Whether the text has a surrogate, which no document can hold."""
+    return any("\ud800" <= each <= "\udfff" for each in text)
 
 
 def _wrong_numbers(path: str, entries: Sequence[Resource | Robot | Group], name: str, least: int) -> Found:

@@ -90,8 +90,8 @@ Planner: TypeAlias = Carp | Shuffled | LongestFirst | Greedy | Neighbourhood | F
 
 @rule(
     "limit/ticks",
-    "A planner may refuse an instance that its tables cannot hold: the compiled engine ticks, durations and positions "
-    f"beyond {2**30}, the time-expanded planner more than {LARGEST_TABLE} ticks.",
+    "A planner may refuse an instance that its tables cannot hold: the compiled engine ticks and durations beyond "
+    f"{2**30} and positions beyond {2**29}, the time-expanded planner more than {LARGEST_TABLE} ticks.",
     DESIGN,
 )
 def ticks_are_held(ticks: int, most: int) -> bool:

@@ -4,7 +4,7 @@ from time import process_time
 
 from hypothesis import given
 
-from carp_spec import Instance, judge
+from carp_spec import Instance, ResourceGraph, Solution, judge
 from carproof import plan_within
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.testing.strategies import instances
@@ -28,6 +28,11 @@ def test_robots_with_slow_places_are_planned_in_time() -> None:
     assert process_time() - started < 2
     assert judge(instance, found).valid
     assert seen == sorted(seen, reverse=True)
+
+
+def test_nobody_is_planned_where_there_is_nothing() -> None:
+    nothing = Instance(ResourceGraph((), ()), ())
+    assert plan_within(nothing, seconds=1) == plan_within(nothing, iterations=1) == Solution((), ())
 
 
 def test_robots_for_which_there_is_no_time_are_unplanned() -> None:

@@ -317,6 +317,9 @@ def news() -> dict[str, Callable[[Fleet], Change]]:
         "document/shape plan": lambda fleet: fleet.add(stays),  # type: ignore[arg-type]
         "limit/ticks pace": lambda fleet: fleet.add(robot, replace(robot, id="v", pace=2**31)),
         "limit/ticks late": lambda fleet: fleet.add(robot, replace(robot, id="v", pace=2**29)),
+        "limit/ticks trace": lambda fleet: fleet.trace(
+            Trace(3, (replace(stays, visits=(*stays.visits, Visit("b", 10**20, None))),))
+        ),
         "trace/prefix trace": lambda fleet: fleet.trace(Trace(3, (replace(stays, visits=(Visit("c", 0, None),)),))),
         "request/now negative": lambda fleet: fleet.advance(-1),
         "request/now none": lambda fleet: fleet.advance(None),  # type: ignore[arg-type]

@@ -287,6 +287,12 @@ NO_TICKS: Any = [Delay("r", 0, True)]
 NO_FOOTPRINT: Any = (900, 600)
 NONE: Any = None
 INFINITE = float("inf")
+HALF = replace(RIGHT.robots[0], id="r\ud800")
+"""Of an id that no document can hold."""
+
+
+def far_away(x: int) -> Instance:
+    return Instance(ResourceGraph((Resource("a", x=x, y=0), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
 
 
 @pytest.mark.parametrize(
@@ -330,6 +336,26 @@ INFINITE = float("inf")
         (lambda: carproof.total_cost(RIGHT, [OF_R, NONE]), "document/shape", "$.plans[1]"),
         (lambda: carp_spec.violations_of(RIGHT, (OF_R, replace(OF_S, robot="t"))), "solution/covers", "$.plans[1]"),
         (lambda: write_trace(Trace(0.5, ())), "document/shape", "$.now"),  # type: ignore[arg-type]
+        (lambda: carproof.optimum(RIGHT, processes=0), "request/limit", "$.processes"),
+        (lambda: carproof.optimality_gap(RIGHT, NONE), "document/shape", "$.planners"),
+        (lambda: carproof.plan(RIGHT, repair="no"), "document/shape", "$.repair"),  # type: ignore[arg-type]
+        (lambda: carproof.audit(RIGHT, SOLVED, find_order="no"), "document/shape", "$.find_order"),  # type: ignore[arg-type]
+        (lambda: carproof.Fleet(RIGHT, 0), "document/shape", "$"),  # type: ignore[arg-type]
+        (lambda: carproof.release(RIGHT, SOLVED, NOTHING, NONE), "document/shape", "$.beyond"),
+        (lambda: carproof.view_map(RIGHT, at=True), "document/shape", "--at"),
+        (lambda: carproof.total_cost(RIGHT, SOLVED), "document/shape", "$.plans"),  # type: ignore[arg-type]
+        (lambda: carproof.verify_bound(RIGHT, b"{}"), "document/shape", "$"),  # type: ignore[arg-type]
+        (lambda: carproof.verify_query(RIGHT, SOLVED, b"{}"), "document/shape", "$"),  # type: ignore[arg-type]
+        (lambda: carproof.planner_named("carp", NONE), "planner/options", "$.options"),
+        (lambda: carproof.read_foreign_solution("text", RIGHT), "document/shape", "file"),  # type: ignore[arg-type]
+        (lambda: carproof.write_orders(RIGHT, SOLVED, NONE), "order/settings", "$.orders"),
+        (lambda: carproof.instance_from_array([[1]], [], [], "stay"), "document/shape", "$.after_goal"),  # type: ignore[arg-type]
+        (lambda: carproof.read_movingai(b"", b"", -1), "movingai/scenario", "$.agents"),
+        (lambda: carproof.conforms(carproof.plan, examples=-1), "program/questions", "$.examples"),
+        (lambda: carproof.conforms(carproof.plan, without=NONE), "document/shape", "$.without"),
+        (lambda: carproof.conforms(carproof.plan, large=NONE), "request/limit", "$.limit"),
+        (lambda: carproof.plan_within(far_away(10**20), iterations=1), "limit/ticks", "$.graph.nodes[0].x"),
+        (lambda: carproof.plan(replace(RIGHT, robots=(HALF,))), "instance/robot-id", "$.robots[0].id"),
     ],
 )
 def test_other_malformed_arguments_are_refused(ask: Callable[[], object], rule: str, path: str) -> None:
@@ -386,6 +412,7 @@ def test_a_graph_that_was_found_right_is_not_looked_at_again_with_other_robots()
     robot = Robot("r", "0,0", "1,0")
     plan = Plan("r", (Visit("0,0", 0, 1), Visit("1,0", 1, 2)))
     empty = carproof.instance_from_array([[1] * 60] * 60, starts=[], goals=[], after_goal="vanish")
+    empty = replace(empty, graph=replace(empty.graph))
 
     def calls(robots: tuple[Robot, ...]) -> int:
         profile = cProfile.Profile()

@@ -20,7 +20,8 @@ from tests.oracle.viewing import (
 )
 from tests.programs import require_programs
 
-from carp_spec import Resource, ResourceGraph
+from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit
+from carp_spec.model import Group
 from carproof.viewer import limits
 from carproof.viewer.colours import LIGHT, LOOKS
 from carproof.viewer.page import view
@@ -83,6 +84,13 @@ def test_the_still_of_the_chart_has_rows_windows_stays_and_violations(carproof: 
         for tag, kind in (("text", "row-name"), ("path", "window"), ("path", "bar"), ("path", "violation"))
     }
     assert count == {"row-name": 5, "window": 5, "bar": 7, "violation": 2}
+
+
+def test_a_stay_of_no_ticks_in_a_group_is_drawn_and_its_rule_named() -> None:
+    graph = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),), groups=(Group("g", ("a", "b")),))
+    instance = Instance(graph, (Robot("r", "a", "b"),))
+    plans = Solution((Plan("r", (Visit("a", 0, 0), Visit("b", 0, 1))),), ("r",))
+    assert b"plan/duration" in view(instance, plans)
 
 
 def test_one_way_moves_are_arrows(carproof: Run) -> None:

@@ -21,9 +21,10 @@ from carp_optimized.improve.holding import plan_holding_starts
 from carp_optimized.improve.planning import Found, plan_crowd, time_of_visit
 from carp_optimized.improve.repair import plan_failed_first
 from carp_optimized.settling import settled
+from carp_optimized.state.limits import refuse_what_is_too_large
 from carp_spec import Instance, Solution
 from carp_spec.inputs.options import require_polish_options
-from carp_spec.inputs.values import require_instance
+from carp_spec.inputs.values import known, require_instance
 
 SECONDS = 10.0
 """The time, unless one is given."""
@@ -52,6 +53,9 @@ def plan_within(
     require_polish_options(iterations, seconds, seed)
     if seconds is None and iterations is None:
         seconds = SECONDS
+    refuse_what_is_too_large(instance)
+    if not instance.robots:
+        return Found(known(instance, Solution((), ())), 0)
     begun, started = started, clock()
     if seconds is not None:
         seconds = max(seconds - (started - begun), BRIEF)
@@ -60,7 +64,7 @@ def plan_within(
     )
     if found is not None:
         return found
-    visit = 0.0 if seconds is None or not instance.robots else time_of_visit(instance, clock, finish)
+    visit = 0.0 if seconds is None else time_of_visit(instance, clock, finish)
     solution = _first_plans(instance, lambda: clock() - started, seconds, visit)
     if seconds is None:
         solution = carp_optimized.polish(instance, solution, iterations=iterations, seed=seed, advance=advance)

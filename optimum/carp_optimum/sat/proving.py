@@ -22,7 +22,7 @@ from carp_verify.optimum.rules import is_provable
 from carp_verify.optimum.unsolvable import Clauses
 
 
-def write_proof(instance: Instance, best: Optimum, directory: Path, limit: float) -> None:
+def write_proof(instance: Instance, best: Optimum, directory: Path | str, limit: float) -> None:
     """Write the proof directory of an answer; raises `TimeOver` if that takes more than `limit` seconds."""
     require_instance(instance)
     require_limits(limit=limit)
@@ -42,9 +42,10 @@ def write_proof(instance: Instance, best: Optimum, directory: Path, limit: float
         files |= _beaten(beat_formula(instance, None, evidence).formula, deadline)
     manifest = _manifest_of(best, {name: sha256(content).hexdigest() for name, content in files.items()})
     files["manifest.json"] = msgspec.json.encode(manifest) + b"\n"
-    directory.mkdir(parents=True, exist_ok=True)
+    folder = Path(directory)
+    folder.mkdir(parents=True, exist_ok=True)
     for name, content in files.items():
-        (directory / name).write_bytes(content)
+        (folder / name).write_bytes(content)
 
 
 def _beaten(formula: Formula, deadline: Deadline) -> Mapping[str, bytes]:

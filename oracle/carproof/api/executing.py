@@ -45,10 +45,11 @@ def release(
 
     By the planned order, all robots may have theirs together. For the robots of `beyond`, it is also decided what each
     may have alone, whatever the order, by searches that take at most so many seconds together, and each at most so many
-    states: 20,000 if neither is given. Raises `Refusal` for a solution that breaks a rule, and for a trace that does
-    not keep to its paths and durations.
+    states: 20,000 if neither is given. Raises `Refusal` for a solution that breaks a rule or has rotations, and for a
+    trace that does not keep to its paths and durations.
     """
     limit = _limit(states, seconds)
+    require_each(beyond, RobotId, "$.beyond")
     situation = Releasing(instance, solution, trace)
     for robot in beyond:
         require_robot(instance, robot, "$.beyond")

@@ -174,7 +174,7 @@ class Fleet:
         require_instance(instance)
         require_planner(planner, Neighbourhood)
         require_tick(now)
-        sound = sound_solution(instance, solution or Solution((), ()))
+        sound = sound_solution(instance, Solution((), ()) if solution is None else solution)
         by_robot = {plan.robot: plan for plan in sound.plans}
         robots = {id: robot for id, robot in instance.robot.items() if id in by_robot}
         for place, robot in enumerate(instance.robots):

@@ -9,6 +9,7 @@ from carp_spec.check import MOST_LISTED
 from carp_spec.execution.execution_rules import trace_violations
 from carp_spec.execution.traces import Trace
 from carp_spec.requests import require_trace, sound_solution
+from carp_spec.shapes import require_shape
 from carp_verify.footprint.apart import footprint_violations
 from carp_verify.footprint.rules import Footprint, cells_have_a_step, vehicle_has_a_size
 from carproof.engines import engine_named
@@ -60,6 +61,7 @@ def audit(instance: Instance, solution: Solution, *, find_order: bool = False, s
     The order is that of the solution; with `find_order`, any in which each plan is optimal, if there is one. Plans
     are undecided that are not looked at in so many seconds. Raises `Refusal` for a solution that breaks a rule.
     """
+    require_shape(find_order, bool, "$.find_order")
     until = deadline(seconds)
     sound = sound_solution(instance, solution)
     audited = audit_in_some_order if find_order else audit_in_order

@@ -7,6 +7,7 @@ from carp_spec import Instance, Plan, Planner, RobotId, Solution
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.planners import BY_DEFAULT
 from carp_spec.requests import require_query
+from carp_spec.shapes import require_shape
 from carproof.engines import engine_named, repaired, repairs_by_default, warm
 
 
@@ -17,6 +18,7 @@ def plan(instance: Instance, planner: Planner | None = None, *, repair: bool | N
     neighbourhood planner with its baseline. Raises `Refusal` for a malformed instance or planner, and for numbers that
     are too large.
     """
+    require_shape(repair, bool | None, "$.repair")
     chosen = BY_DEFAULT if planner is None else planner
     solution = engine_named(None).plan(instance, chosen)
     return repaired(instance, solution) if (repairs_by_default(chosen) if repair is None else repair) else solution

@@ -9,10 +9,14 @@ from pathlib import Path
 from carp_optimum.gap import PLANNERS, Gap, gap
 from carp_optimum.optimum import optimum as found
 from carp_optimum.sat.core_guided import Optimum
-from carp_spec import Instance, Planner
+from carp_spec import Instance, Planner, Refusal
 from carp_spec.documents.bounds import BoundDocument
 from carp_spec.inputs.options import PROCESSES, SEARCH_SECONDS
+from carp_spec.rule import is_between
+from carp_spec.shapes import require_each
 from carproof.engines import warm
+
+MOST_PROCESSES = 2
 
 
 def optimum(instance: Instance, limit: float = SEARCH_SECONDS, *, processes: int = PROCESSES) -> Optimum:
@@ -21,6 +25,9 @@ def optimum(instance: Instance, limit: float = SEARCH_SECONDS, *, processes: int
     The answer rests on the solver; `write_proof` writes a proof of it. Two `processes` are faster on two cores, and the
     answer is the same. Raises `Refusal` for a wrong limit, and if the formula outgrows the memory.
     """
+    if not is_between(processes, 1, MOST_PROCESSES):
+        message = f"it must be a whole number of at least 1 and at most {MOST_PROCESSES}, not {processes!r}"
+        raise Refusal("option", "$.processes", "request/limit", message)
     warm()
     return found(instance, limit, processes=processes)
 
@@ -39,12 +46,16 @@ def bound(instance: Instance, seconds: float | None = None, steps: int | None = 
 
 
 def optimality_gap(instance: Instance, planners: Sequence[Planner] = PLANNERS, limit: float = SEARCH_SECONDS) -> Gap:
-    """Plan with every planner, and search for the optimum and the best order, each for at most `limit` seconds."""
+    """Plan with every planner, and search for the optimum and the best order, each for at most `limit` seconds.
+
+    Raises `Refusal` as `plan` and `optimum` do.
+    """
+    require_each(planners, Planner, "$.planners")
     warm()
     return gap(instance, planners, limit)
 
 
-def write_proof(instance: Instance, best: Optimum, directory: Path, limit: float = SEARCH_SECONDS) -> None:
+def write_proof(instance: Instance, best: Optimum, directory: Path | str, limit: float = SEARCH_SECONDS) -> None:
     """Write a proof directory of an answer of `optimum`, which `verify_proof` checks.
 
     Raises `TimeOver` if that takes more than `limit` seconds, and `Refusal` if the search gave no answer.

@@ -1,9 +1,12 @@
 """Python functions that plan, judged: for tests and scripts."""
 
 from collections.abc import Callable, Collection, Sequence
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, cast
 
 from carp_spec import Instance, Refusal, Solution
+from carp_spec.inputs.options import require_limits
+from carp_spec.rule import is_between
+from carp_spec.shapes import require_each
 from carproof.conform.cases import Case
 from carproof.conform.findings import RIGHT_QUESTIONS
 from carproof.conform.judging.claims import FEATURES, Claims
@@ -39,10 +42,16 @@ def conforms(  # noqa: PLR0913 - the options of the command
     the smallest cases found. Raises `Refusal` for an unknown level or feature.
     """
     require("hypothesis", "pysat")
+    require_each([*without] if isinstance(cast("object", without), Collection) else without, str, "$.without")
+    require_limits(limit=large)
     levels = [each.label for each in WHOLE_LEVELS]
     for option, each, known in (("level", level, levels), *(("without", each, [*FEATURES]) for each in without)):
         if each not in known:
             message = f"it must be one of {', '.join(known)}, not {each!r}"
+            raise Refusal("option", f"$.{option}", RIGHT_QUESTIONS.id, message)
+    for option, number in (("examples", examples), ("seed", seed)):
+        if not is_between(number, 0):
+            message = f"it must be a whole number of at least 0, not {number!r}"
             raise Refusal("option", f"$.{option}", RIGHT_QUESTIONS.id, message)
     name = getattr(planner, "__name__", type(planner).__name__)
     claims = Claims(frozenset(without), solvable, groups, stops)

@@ -193,8 +193,9 @@ def stays_in_groups(stage: Stage) -> Mapping[int, Sequence[Occupation]]:
     for plan in stage.planned.plans:
         before: set[int] = set()
         for visit in plan.visits:
-            groups = stage.instance.graph.groups_of.get(visit.resource, ())
-            for each in groups if lasts(visit.enter, visit.leave) else ():
+            is_there = lasts(visit.enter, visit.leave)
+            groups = stage.instance.graph.groups_of.get(visit.resource, ()) if is_there else ()
+            for each in groups:
                 stays = found.setdefault(each, [])
                 enter = stays.pop()[0] if each in before and stays[-1][1] == visit.enter else visit.enter
                 stays.append((enter, visit.leave))

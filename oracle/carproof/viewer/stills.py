@@ -3,6 +3,7 @@
 from xml.etree.ElementTree import Element
 
 from carp_spec import Instance, Solution
+from carp_spec.shapes import require_shape
 from carproof.viewer.chart_picture import chart_picture
 from carproof.viewer.colours import PAINT, fixed
 from carproof.viewer.limits import refuse_more, refuse_tick
@@ -14,6 +15,7 @@ from carproof.viewer.shapes import svg_text
 
 def view_map(instance: Instance, solution: Solution | None = None, *, at: int = 0, title: str = TITLE) -> bytes:
     """An SVG file of the map at a tick, or without a solution of starts and goals. Raises as `view` does."""
+    require_shape(at, int, "--at")
     refuse_tick(at, "--at")
     scene = make_scene(instance, solution, title)
     when = "starts and goals" if scene.alone else f"at tick {at}"

@@ -1,12 +1,13 @@
 """Costs of plans that may be malformed."""
 
 from collections.abc import Sequence
+from typing import cast
 
 from carp_spec import plan_rules
 from carp_spec.inputs.values import require_instance
 from carp_spec.model import Instance, Plan, RobotId, Visit
 from carp_spec.refusal import Refusal
-from carp_spec.shapes import require_shape
+from carp_spec.shapes import require_each, require_shape
 
 
 def plan_cost(instance: Instance, plan: Plan) -> int:
@@ -22,6 +23,8 @@ def plan_cost(instance: Instance, plan: Plan) -> int:
 def total_cost(instance: Instance, plans: Sequence[Plan]) -> int:
     """The sum of costs of the plans; raises `Refusal` as `plan_cost` does."""
     require_instance(instance)
+    if not isinstance(cast("object", plans), Sequence):
+        require_each(plans, Plan, "$.plans")
     return sum(_cost(instance, plan, f"$.plans[{place}]") for place, plan in enumerate(plans))
 
 

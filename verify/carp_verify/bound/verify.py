@@ -27,12 +27,14 @@ number of steps.
 """
 
 from collections.abc import Sequence
+from typing import cast
 
 from carp_spec import Instance, Refusal, RobotId
 from carp_spec.documents.bounds import BoundDocument, CutDocument, DeadlinesDocument
 from carp_spec.documents.instances import digest
 from carp_spec.inputs.values import require_instance
 from carp_spec.rule import is_whole
+from carp_spec.shapes import require_shape
 from carp_verify.bound.least import Budget, RobotSearch
 from carp_verify.bound.network import network_of
 from carp_verify.bound.rules import (
@@ -60,6 +62,8 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
     Cuts and deadlines know groups too.
     """
     require_instance(instance)
+    if not isinstance(cast("object", certificate), BoundDocument):
+        require_shape(certificate, BoundDocument)
     require(is_about, is_about(certificate.instance, digest(instance)), "$.instance", "it is about another instance")
     scale = certificate.scale
     require(is_scale, is_scale(scale), "$.scale", f"the scale must be a power of two, and is {scale!r}")
