@@ -88,9 +88,10 @@ def delay_named(text: str, instance: Instance, solution: Solution) -> Delay:
 
 @dataclass(frozen=True, slots=True)
 class Execution:
-    """The result of a driver with a solution; `followed` is the solution whose order it kept, switches included.
+    """The result of a driver with a solution.
 
-    `late` has, for each robot that arrived, the ticks by which it was later than planned, below 0 if it was earlier.
+    `followed` is the solution whose order it kept, switches included; after switches a plan may begin later than its
+    release, which `plan/start` does not allow. `late` has, for each robot that arrived, the ticks by which it was later than planned, below 0 if it was earlier.
     """
 
     driver: Driver
