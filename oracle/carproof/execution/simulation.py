@@ -91,7 +91,8 @@ class Execution:
     """The result of a driver with a solution.
 
     `followed` is the solution whose order it kept, switches included; after switches a plan may begin later than its
-    release, which `plan/start` does not allow. `late` has, for each robot that arrived, the ticks by which it was later than planned, below 0 if it was earlier.
+    release, which `plan/start` does not allow. `late` has, for each robot that arrived, the ticks by which it was later
+    than planned, below 0 if it was earlier.
     """
 
     driver: Driver
