@@ -41,14 +41,17 @@ class Conformance:
         *,
         without: Collection[str] = (),
         solvable: bool = False,
+        groups: bool = False,
+        stops: bool = False,
         large: float = LARGE_SECONDS,
     ) -> None:
         """Fail the test if the planner does not conform to the level.
 
         The planner takes a `carp_spec.Instance` and returns a `carp_spec.Solution`; with `documents=True` it takes and
         returns the documents, as dictionaries. `without` names features that it is not asked, like `carproof conform
-        --without`. With `solvable=True` all robots can have plans. For `large` seconds it
-        is also asked about 10 to 1,000 robots; no other time limits it.
+        --without`. With `solvable=True` all robots can have plans. Only with `groups=True` instances have groups, and
+        only with `stops=True` robots have several stops or service. For `large` seconds it is also asked about 10 to
+        1,000 robots; no other time limits it.
         """
         __tracebackhide__ = True
         from click import ClickException  # noqa: PLC0415 - only a test that judges loads these
@@ -67,7 +70,8 @@ class Conformance:
             print(before.stale)  # noqa: T201 - pytest shows it
         asked = (level, examples, seed, documents)
         try:
-            report = conforms(planner, *asked, without=without, solvable=solvable, large=large, saved=before.cases)
+            claims: dict[str, Any] = {"without": without, "solvable": solvable, "groups": groups, "stops": stops}
+            report = conforms(planner, *asked, **claims, large=large, saved=before.cases)
         except ModuleNotFoundError as error:
             pytest.fail(f"carproof.conforms {advice(error) or error}", pytrace=False)
         except Refusal as refusal:
@@ -75,7 +79,7 @@ class Conformance:
         if report.interrupted:
             raise KeyboardInterrupt
         try:
-            save_all(report.failures, folder, origin)
+            save_all(report.failures, folder, origin, before.not_asked(report.outcomes))
         except ClickException as error:
             print(f"Nothing is saved: {error.message}")  # noqa: T201 - pytest shows it
         if not report.conforms:

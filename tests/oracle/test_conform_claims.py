@@ -87,7 +87,7 @@ def test_a_case_is_left_out_where_it_has_a_feature_that_is_not_claimed(
         claims = Claims(frozenset([feature]), solvable)
         assert claims.why_not(Case("smoke", "one", "plan", without)) is None
         assert claims.why_not(Case("smoke", "one", "plan", having)) == f"it does not claim {feature}"
-        assert claims.left_out == [feature, *["robots without a plan"] * solvable]
+        assert claims.left_out == [feature, *["robots without a plan"] * solvable, "groups", "stops and service"]
     cases = [Case("smoke", "one", "plan", instance) for instance in (having, without)]
     assert [feature in features(case) for case in cases] == [feature != "vanish", False]
 

@@ -18,6 +18,7 @@ from carproof.conform.findings import Category, Fault
 from carproof.conform.judging.outcome import ask
 from carproof.conform.levels import Level
 from carproof.conform.programs.child import Child, Limits
+from carproof.conform.programs.one_shot import OneShot
 from carproof.conform.programs.program import Program
 from carproof.conform.run import Options, Report, conform
 
@@ -125,6 +126,23 @@ def test_the_end_of_standard_error_is_kept_and_bounded() -> None:
 @pytest.mark.parametrize(("how", "category"), [("never stops", Category.TIMEOUT), ("stops badly", Category.CRASH)])
 def test_a_program_must_stop_when_it_is_asked_to(how: str, category: Category) -> None:
     assert [fault.category for fault in run(how, seconds=2).faults] == [category]
+
+
+def test_a_program_that_was_killed_is_started_again_to_be_stopped() -> None:
+    program = Program([*HOSTILE, "stops badly"], LIMITS)
+    program.start()
+    program.kill()
+    program.finish()
+    with pytest.raises(Fault, match="asked to stop"):
+        program.finish(restart=True)
+
+
+def test_a_program_that_writes_more_than_it_may_is_told_so() -> None:
+    limits = replace(LIMITS, seconds=GENEROUS, output=2**16)
+    program = OneShot(["sh", "-c", "head -c 200000 /dev/zero >&2", "{instance}", "{solution}"], limits)
+    smoke = next(iter(smoke_cases(("plan",), Level.SOUND, True)))
+    with pytest.raises(Fault, match="more than 65536 bytes"):
+        program.ask(smoke)
 
 
 def test_the_environment_tells_nothing_of_the_case(monkeypatch: pytest.MonkeyPatch) -> None:

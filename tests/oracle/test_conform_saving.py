@@ -51,6 +51,19 @@ def test_findings_of_an_earlier_run_are_cleared_and_no_other_file(tmp_path: Path
     assert files(tmp_path) == {"mine.txt"}
 
 
+def test_findings_that_were_not_asked_again_stay_beside_those_of_the_run(tmp_path: Path) -> None:
+    one, other = FAILURES[0], replace(FAILURES[1], case=replace(CASE, name="another"))
+    save_all([one, other], tmp_path, ORIGIN)
+    before = read_saved(tmp_path, whole=False)
+    kept = before.not_asked([Outcome(before.cases[1]), Outcome(before.cases[0], asked=False)])
+    assert kept == {"."}
+    assert save_all([other], tmp_path, ORIGIN, kept) == [tmp_path / "2-plan-duration"]
+    assert len(read_saved(tmp_path, whole=False).cases) == 2
+    save_all([], tmp_path, ORIGIN, frozenset(["2-plan-duration"]))
+    assert len(read_saved(tmp_path, whole=False).cases) == 1
+    assert {each.partition("/")[0] for each in files(tmp_path)} == {"run.json", "2-plan-duration"}
+
+
 @pytest.mark.parametrize("whole", [False, True])
 def test_saved_cases_are_read_as_they_were_asked(tmp_path: Path, whole: bool) -> None:
     ops: tuple[str, ...] = ("plan",) if whole else ASKED_OPS

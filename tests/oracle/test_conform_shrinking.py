@@ -6,13 +6,14 @@ from dataclasses import replace
 import pytest
 from hypothesis import strategies as st
 
-from carp_spec import Robot
+from carp_spec import Robot, Solution
 from carproof.conform import shrinking
 from carproof.conform.asking.smoke import row
 from carproof.conform.cases import Case
 from carproof.conform.findings import Category, Finding, wrong
 from carproof.conform.judging.outcome import Outcome
 from carproof.conform.shrinking import FailureSearch
+from carproof.conform.smaller import smallest
 
 MOST = 12
 JUMPS, LATE = wrong("plan/move", "it jumps"), wrong("query/optimal", "it is late")
@@ -72,7 +73,8 @@ def test_without_time_to_shrink_the_first_failure_stays() -> None:
     asked = Asked(lambda robots: JUMPS if robots >= 3 else None)
     made = search(asked, shrink_seconds=0.0)
     assert (best(made), made.minimal) == ((asked.robots[-1], JUMPS), False)
-    assert max(asked.robots[:-1]) < 3 < asked.robots[-1]
+    *before, first, again = asked.robots
+    assert max(before) < 3 < first == again, "and it is asked once more"
 
 
 def test_of_failures_that_hypothesis_takes_for_simpler_the_smallest_is_kept_and_of_equals_the_last() -> None:
@@ -93,11 +95,17 @@ def test_smaller_failures_are_looked_for_until_the_time_is_over(monkeypatch: pyt
     assert asked.limits.count(None) == len(asked.limits) - 3
 
 
-def test_a_failure_that_does_not_come_again_stays_as_it_is() -> None:
+def test_a_failure_that_does_not_come_again_stays_and_nothing_is_said_of_its_size() -> None:
     asked = Asked(lambda robots: JUMPS if asked.robots.count(robots) == 1 and len(asked.robots) == 4 else None)
     made = search(asked)
     assert best(made) == (asked.robots[3], JUMPS)
-    assert made.minimal
+    assert (made.minimal, made.repeats) == (False, False)
+
+
+def test_a_robot_that_a_solution_names_and_the_instance_does_not_have_stays_while_all_else_goes() -> None:
+    named = replace(case(2), op="check", solution=Solution((), (), ("r0", "r1", "nobody")))
+    found, is_minimal = smallest(named, lambda each: "nobody" in each.solution.unplanned, lambda: False)
+    assert (len(found.instance.graph.resources), found.solution.unplanned, is_minimal) == (0, ("nobody",), True)
 
 
 @pytest.mark.parametrize(

@@ -46,8 +46,8 @@ class Subject(ABC):
     def start(self) -> None:  # noqa: B027 - not all do
         """Get ready; raises `Fault` if that fails."""
 
-    def finish(self) -> None:  # noqa: B027 - not all do
-        """End; raises `Fault` if that fails."""
+    def finish(self, *, restart: bool = False) -> None:  # noqa: B027 - not all do
+        """End, started again before if it was killed and `restart` asks for it; raises `Fault` if that fails."""
 
     def kill(self) -> None:  # noqa: B027 - not all do
         """Leave nothing behind."""

@@ -71,8 +71,8 @@ class Report:
     `outcomes` are those of the fixed cases. `random` counts the random cases by outcome, `tallies` those of each op,
     `large` the large cases, and `judged` all answers of each op. `extent` is how large the cases rightly answered were,
     and `cut` says which large cases were not asked. `smallest` is the failing random or large case after shrinking, and
-    `minimal` whether nothing more can be taken away from it. A fault without a case, at the start or at the stop, is in
-    `faults`.
+    `minimal` whether nothing more can be taken away from it; with `repeats` it failed again when it was asked once
+    more. A fault without a case, at the start or at the stop, is in `faults`.
     """
 
     options: Options
@@ -86,6 +86,7 @@ class Report:
     cut: list[str] = field(default_factory=list)
     smallest: Outcome | None = None
     minimal: bool = False
+    repeats: bool = True
     faults: list[Finding] = field(default_factory=list)
     interrupted: bool = False
 
@@ -168,7 +169,8 @@ class Report:
             self.large[label(outcome)] += 1
         else:
             self.outcomes.append(outcome)
-        if outcome.answer is not None and outcome.is_judged:
+        is_large = outcome.case.stage == "large" and self.options.level in (Level.COMPLETE, Level.OPTIMAL)
+        if outcome.answer is not None and outcome.is_judged and not is_large:  # the rules alone judge a large one there
             self.judged[outcome.case.op] += 1
             if outcome.case.op in self.options.ops:
                 self.extent.add(outcome)
@@ -194,14 +196,15 @@ def conform(
     run = _Run(subject, report, advance)
     try:
         run.ask_everything(saved)
-        subject.finish()
+        subject.finish(restart=run.search.best is None and not report.findings)
     except Fault as fault:
         report.faults.append(fault.finding)
     except KeyboardInterrupt:
         report.interrupted = True
     finally:
         subject.kill()
-        report.smallest, report.minimal = run.search.best, run.search.minimal
+        search = run.search
+        report.smallest, report.minimal, report.repeats = search.best, search.minimal, search.repeats
     report.program = subject.name
     return report
 
@@ -305,7 +308,8 @@ class _Run:
             if monotonic() - started > most and rung.robots < SIZES[-1]:
                 too_large[rung.op] = next(robots for robots in SIZES if robots > rung.robots)
                 message = f"{rung.op} of {rung.robots} robots took more than {most:g} s with its judgement"
-                cut.append(f"{message}, so none of more robots was asked")
+                message += ", so none of more robots was asked"
+                cut += [message] if message not in cut else []
 
 
 def _not_asked(ladder: Sequence[Rung], position: int, seconds: float) -> str:

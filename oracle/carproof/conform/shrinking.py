@@ -28,7 +28,8 @@ Ask = Callable[[Case, float | None], Outcome]
 class FailureSearch:
     """Looks for a case that fails, and then for smaller ones that fail alike; `best` is the smallest so far.
 
-    It is `minimal` if nothing more can be taken away from it. `may_ask` is whether a program can be asked a case.
+    It is `minimal` if nothing more can be taken away from it, and it `repeats` if it fails again when it is asked once
+    more. `may_ask` is whether a program can be asked a case.
     """
 
     def __init__(
@@ -44,6 +45,7 @@ class FailureSearch:
         self._first: Outcome | None = None
         self.best: Outcome | None = None
         self.minimal = False
+        self.repeats = True
 
     def run(self, cases: "SearchStrategy[Case]", examples: int, seed: int) -> None:
         """Draw at most `examples` cases."""
@@ -105,10 +107,12 @@ class FailureSearch:
         return True
 
     def _confirm(self) -> None:
-        """Ask the smallest case that took too long once more, with the full time limit."""
-        if self.best is None or self.best.fault.category != Category.TIMEOUT:
-            return
+        """Ask the smallest case once more, with the full time limit; what took too long must do so again."""
+        assert self.best is not None  # noqa: S101 - a promise of ours
         again = self._ask(self.best.case, None)
         alike = again.finding is not None and again.finding.key == self.best.fault.key
-        self.best = again if alike else self._first
+        if self.best.fault.category == Category.TIMEOUT:
+            self.best = again if alike else self._first
+        else:
+            self.repeats = alike
         self.minimal = self.minimal and alike

@@ -6,6 +6,7 @@ fine, so that a question of hundreds of robots is small after a few.
 
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import TypeVar
@@ -85,13 +86,19 @@ def _steps(value: int, least: int) -> Iterator[int]:
         step //= 2
 
 
-def _made(case: Case, instance: Instance, plans: Sequence[Plan] | None = None) -> Case:
-    """The question with another instance and some of its plans; a robot that loses its plan is unplanned."""
+def _made(
+    case: Case, instance: Instance, plans: Sequence[Plan] | None = None, gone: AbstractSet[RobotId] = frozenset()
+) -> Case:
+    """The question with another instance and some of its plans; a robot that loses its plan is unplanned.
+
+    Of a solution to check, the robots that are `gone` are those that it names and the instance does not have.
+    """
     plans = case.solution.plans if plans is None else plans
     kept = {plan.robot for plan in plans}
+    gone = gone | (case.instance.robot.keys() - instance.robot.keys())
     lost = [plan.robot for plan in case.solution.plans if plan.robot not in kept]
-    order = tuple(robot for robot in case.solution.order if robot in instance.robot and robot not in lost)
-    unplanned = tuple(robot for robot in (*case.solution.unplanned, *lost) if robot in instance.robot)
+    order = tuple(robot for robot in case.solution.order if robot not in gone and robot not in lost)
+    unplanned = tuple(robot for robot in (*case.solution.unplanned, *lost) if robot not in gone)
     ended = tuple(plans) if case.op == "check" else tuple(_ended(instance, plan) for plan in plans)
     delays = tuple(delay for delay in case.delays if delay[0] in kept)
     solution = replace(case.solution, plans=ended, order=order, unplanned=unplanned)
@@ -127,11 +134,12 @@ def _with_visits(case: Case, change: Callable[[Visit], Visit]) -> list[Plan]:
 
 
 def _fewer_robots(best: Smallest) -> Iterator[Case]:
-    for gone in _chunks([*best.case.instance.robot]):
+    named = best.case.solution
+    for some in _chunks([*dict.fromkeys((*best.case.instance.robot, *named.order, *named.unplanned))]):
         case = best.case
-        robots = tuple(each for each in case.instance.robots if each.id not in gone or each.id == case.robot)
-        instance = replace(case.instance, robots=robots)
-        yield _made(case, instance, [plan for plan in case.solution.plans if plan.robot in instance.robot])
+        gone = some - {case.robot}
+        instance = replace(case.instance, robots=tuple(each for each in case.instance.robots if each.id not in gone))
+        yield _made(case, instance, [plan for plan in case.solution.plans if plan.robot not in gone], gone)
 
 
 def _fewer_plans(best: Smallest) -> Iterator[Case]:

@@ -37,6 +37,7 @@ from carproof.progress import progress
 from carproof.protocol.ops.published import op_list
 
 if TYPE_CHECKING:
+    from carproof.conform.reporting.saved import Saved
     from carproof.conform.reporting.saving import Origin
     from carproof.conform.run import Report
 
@@ -214,7 +215,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         remark(printable(before.stale))
     with progress("asking", number) as advance, hypothesis_elsewhere():
         report = conform(subject, options, advance, before.cases)
-    saved = _saved(report, folder, origin)
+    saved = _saved(report, folder, origin, before)
     if junit is not None:
         write_whole(junit, junit_document(report, saved))
     if html is not None:
@@ -258,14 +259,14 @@ def _one_shot(program: tuple[str, ...], limits: Limits, format: str | None) -> O
     return OneShot(program, limits, format)
 
 
-def _saved(report: "Report", folder: Path, origin: "Origin") -> list[Path]:
+def _saved(report: "Report", folder: Path, origin: "Origin", before: "Saved") -> list[Path]:
     """Save the failures, and return their folders; where they cannot be written, say so and go on to the verdict."""
     from carproof.conform.reporting.saved import save_all  # noqa: PLC0415 - what draws pictures is loaded when it is needed
 
     if report.interrupted and not report.failures:
         return []
     try:
-        return save_all(report.failures, folder, origin)
+        return save_all(report.failures, folder, origin, before.not_asked(report.outcomes))
     except click.ClickException as error:
         remark(f"Nothing is saved: {printable(error.message)}")
         return []

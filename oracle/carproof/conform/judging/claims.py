@@ -44,8 +44,12 @@ class Claims:
 
     @property
     def left_out(self) -> list[str]:
-        """The features that the program is not asked, in the order of `FEATURES`."""
-        return [name for name in FEATURES if name in self.without] + [UNSOLVABLE] * self.solvable
+        """The features that the program is not asked, in the order of `FEATURES`, and what else it does not claim."""
+        others = {UNSOLVABLE: self.solvable, "groups": not self.groups, "stops and service": not self.stops}
+        return [
+            *(name for name in FEATURES if name in self.without),
+            *(name for name, is_out in others.items() if is_out),
+        ]
 
     def why_not(self, case: Case) -> str | None:
         """The reason why the program is not asked a case, `None` if it is asked."""

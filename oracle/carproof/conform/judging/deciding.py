@@ -4,9 +4,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from carp_spec import Solution
+from carp_spec.documents.solutions import solution_of
 from carproof.conform.findings import LEAST_ANSWERED, LEAST_TRIED, answers_enough, tries_enough
 from carproof.conform.judging.gave_up import Effort
 from carproof.conform.judging.outcome import Outcome
+from carproof.optima import OptimumDocument
 from carproof.protocol.ops.planning import QueryDocument
 
 
@@ -58,6 +60,8 @@ class Extent:
         self.capacity = max(self.capacity, *(resource.capacity for resource in resources))
         self.duration = max(self.duration, *(resource.duration for resource in resources))
         self.pace = max([self.pace, *(robot.pace for robot in robots)])
+        if isinstance(answer, OptimumDocument) and answer.solution is not None:
+            answer = solution_of(answer.solution)
         plans = [*outcome.case.solution.plans, *(answer.plans if isinstance(answer, Solution) else ())]
         ends = [visit.enter for plan in plans for visit in plan.visits[-1:]]
         if isinstance(answer, QueryDocument) and answer.plan:

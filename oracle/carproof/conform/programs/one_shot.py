@@ -1,5 +1,6 @@
 """A program that plans whole instances: started for each case, with a file for the instance and one for its answer."""
 
+import signal
 import subprocess
 from collections.abc import Sequence
 from contextlib import suppress
@@ -17,6 +18,8 @@ from carproof.formats import carproof_documents, format_of, looks_like_none, rea
 from carproof.formats.movingai import GridMap, movingai_instance
 from carproof.formats.movingai_writer import MAP_NAME, is_classical, write_movingai
 
+SHELL = 128
+"""A shell whose command was killed by a signal ends with its number and this."""
 INSTANCE, MAP, SCEN, AGENTS, SOLUTION = "{instance}", "{map}", "{scen}", "{agents}", "{solution}"
 PROBE = movingai_instance(GridMap(3, 2, ("...", "...")), [Robot("r1", "2,0", "0,1")], "park")
 """An instance whose right answer fits only one format: only in one order of coordinates is the robot's start a cell."""
@@ -89,6 +92,9 @@ class OneShot(Subject):
             message = f"no answer within {self._limits.shown(seconds)}"
             raise Fault(Finding(Category.TIMEOUT, IN_TIME.id, message, ending_of_errors))
         written = self._solution(solution, ending_of_errors) if names(self._template, SOLUTION) else printed
+        if code in (-signal.SIGXFSZ, SHELL + signal.SIGXFSZ):
+            message = f"it wrote a file, or output, of more than {self._limits.output} bytes, which is the most it may"
+            raise Fault(Finding(Category.PROTOCOL_ERROR, RIGHT_RESULT.id, message, ending_of_errors))
         if code not in (0, 1) or (code == 1 and not written):
             raise Fault(Finding(Category.CRASH, is_alive.id, ending(code), ending_of_errors))
         if not (written or self.is_classical) or len(written) > self._limits.output:

@@ -91,8 +91,10 @@ class Program(Subject):
             finding = fault.finding
             raise Fault(replace(finding, stderr=finding.stderr or child.stderr)) from fault
 
-    def finish(self) -> None:
-        """Ask the process to stop; raises `Fault` if it does not end with 0."""
+    def finish(self, *, restart: bool = False) -> None:
+        """Ask the process to stop, or a new one if that is gone; raises `Fault` if it does not end with 0."""
+        if self._child is None and restart:
+            self.start()
         if self._child is None:
             return
         with self._ended_by_faults(self._child):

@@ -34,7 +34,7 @@ def report_document(report: Report, saved: Sequence[Path]) -> bytes:
         sizes = {"robots": len(case.instance.robots), "resources": len(case.instance.graph.resources)}
         asked = {"stage": case.stage, "case": case.name, "op": case.op, **sizes}
         asked |= {} if folder is None else {"folder": str(folder)}
-        asked |= {"minimal": report.minimal} if outcome is report.smallest else {}
+        asked |= {"minimal": report.minimal, "repeats": report.repeats} if outcome is report.smallest else {}
         failures.append({**asdict(outcome.fault), **asked})
     random = {op: _tally_fields(tally) for op, tally in report.tallies.items()}
     document = {

@@ -1,7 +1,8 @@
 """The folder of a program's findings: written in place of those of an earlier run, and read again by the next one."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import count
@@ -35,10 +36,16 @@ class SavedRun(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True, slots=True)
 class Saved:
-    """The cases to ask again, and, where a folder could not be read, one sentence about that."""
+    """The cases to ask again with the folders that have them; where one could not be read, one sentence about that."""
 
     cases: tuple[Case, ...] = ()
+    folders: tuple[str, ...] = ()
     stale: str | None = None
+
+    def not_asked(self, asked: Iterable[Outcome]) -> frozenset[str]:
+        """The folders of the cases that are not among these outcomes, or could not be asked."""
+        done = [replace(each.case, classical=False) for each in asked if each.asked and each.case.stage == "saved"]
+        return frozenset(name for name, case in zip(self.folders, self.cases, strict=True) if case not in done)
 
 
 def own_folder(base: Path, program: str, judged: str) -> Path:
@@ -73,7 +80,7 @@ def read_saved(folder: Path, whole: bool) -> Saved:
     except (OSError, ValueError, Refusal):
         clear(folder)
         return Saved(stale=f"{folder} holds findings that cannot be read: they are cleared.")
-    return Saved(tuple(replace(case, planner=None) for case in cases) if whole else cases)
+    return Saved(tuple(replace(case, planner=None) for case in cases) if whole else cases, tuple(run.cases))
 
 
 def _read_case(folder: Path, name: str) -> Case:
@@ -84,30 +91,47 @@ def _read_case(folder: Path, name: str) -> Case:
     return replace(case_of(vector), stage="saved", name=name)
 
 
-def save_all(failures: Sequence[Outcome], folder: Path, origin: Origin) -> list[Path]:
+def save_all(
+    failures: Sequence[Outcome], folder: Path, origin: Origin, kept: AbstractSet[str] = frozenset()
+) -> list[Path]:
     """Write the smallest failure into a folder, and each other one into a folder in it; return their folders.
 
-    They take the place of earlier findings.
+    They take the place of earlier findings, but for those whose folders are `kept`.
     """
-    clear(folder)
-    names = [_name(number, outcome) for number, outcome in enumerate(failures, start=1)]
-    for name, outcome in zip(names, failures, strict=True):
-        save(outcome, folder / name, origin)
-    if failures:
-        cases = {name: outcome.case.name for name, outcome in zip(names, failures, strict=True)}
+    cases = {name: case for name, case in _cases(folder).items() if name in kept}
+    clear(folder, kept)
+    names: list[str] = []
+    for number, outcome in enumerate(failures, start=1):
+        names.append(next(name for name in _names(number, outcome) if name not in cases))
+        cases[names[-1]] = outcome.case.name
+        save(outcome, folder / names[-1], origin)
+    if cases:
         run = SavedRun("carproof-findings/1", origin.judged, cases)
         write_whole(folder / RUN, msgspec.json.format(msgspec.json.encode(run)) + b"\n")
     return [folder / name for name in names]
 
 
-def _name(number: int, outcome: Outcome) -> str:
-    return "." if number == 1 else f"{number}-{outcome.fault.rule.replace('/', '-')}"
+def _names(number: int, outcome: Outcome) -> Iterator[str]:
+    """The names that the folder of a finding may have, in order."""
+    if number == 1:
+        yield "."
+    yield from (f"{other}-{outcome.fault.rule.replace('/', '-')}" for other in count(max(number, 2)))
 
 
-def clear(folder: Path) -> None:
-    """Remove the files of an earlier run, and no others."""
+def _cases(folder: Path) -> Mapping[str, str]:
+    """The names of the saved cases by their folders; none if they cannot be read."""
+    try:
+        return msgspec.json.decode(plain_file(folder / RUN, LARGEST), type=SavedRun).cases
+    except (OSError, ValueError):
+        return {}
+
+
+def clear(folder: Path, kept: AbstractSet[str] = frozenset()) -> None:
+    """Remove the files of an earlier run, and no others; folders that are `kept` stay."""
     (folder / RUN).unlink(missing_ok=True)
     for finding in [*folder.glob("*/finding.txt"), *folder.glob("finding.txt")]:
+        if str(finding.parent.relative_to(folder)) in kept:
+            continue
         for name in FILES:
             (finding.parent / name).unlink(missing_ok=True)
         with suppress(OSError):  # it holds something else

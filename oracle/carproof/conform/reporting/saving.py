@@ -14,6 +14,7 @@ from carp_spec.documents.instances import instance_document, write_instance
 from carp_spec.documents.solutions import solution_of, write_solution
 from carp_spec.execution.traces import Trace
 from carproof.command_line.files import write_whole
+from carproof.command_line.tables import printable
 from carproof.conform.cases import POLISH_ROUNDS, Case, request_fields
 from carproof.conform.judging.claims import features
 from carproof.conform.judging.outcome import Outcome
@@ -139,7 +140,7 @@ def _finding_text(outcome: Outcome, folder: Path, origin: Origin) -> str:
     lines += [f"This case alone: {filled(origin.one, case, folder)}"] if origin.one else []
     lines += [f"Again: {origin.again}"] if origin.again else []
     if finding.stderr:
-        lines += ["The end of the program's standard error:", finding.stderr]
+        lines += ["The end of the program's standard error:", *map(printable, finding.stderr.splitlines())]
     return "\n".join(lines) + "\n"
 
 

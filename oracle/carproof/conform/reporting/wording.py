@@ -39,7 +39,7 @@ def details(report: Report) -> Iterator[str]:
         yield f"the failing {report.smallest.case.stage} case is {_how_small(report)}"
     random = ", ".join(f"{op} {tally}" for op, tally in report.tallies.items()) or "none"
     needed = f"{LEAST_ANSWERED} in 100 needed, seed {report.options.seed}"
-    yield f"rightly answered: smoke {report.smoke}; random {random} ({needed}); large {report.large['passed']}"
+    yield f"rightly answered: smoke {report.smoke}; random {random} ({needed}); large {_large(report)}"
     if report.options.claims.left_out:
         yield f"not asked, as it does not claim it: {', '.join(report.options.claims.left_out)}"
     yield from (f"large cases: {cut}" for cut in report.cut)
@@ -47,8 +47,16 @@ def details(report: Report) -> Iterator[str]:
         yield f"decided by {report.options.by}"
 
 
+def _large(report: Report) -> str:
+    """The large cases that were answered, as a `Tally` has the random ones."""
+    passed, given_up = report.large["passed"], report.large["gave up"]
+    return f"{passed + given_up}" + (f", {given_up} given up" if given_up else "")
+
+
 def _how_small(report: Report) -> str:
     """Whether the failing random or large case can be made smaller."""
+    if not report.repeats:
+        return "answered otherwise when it is asked once more: the answer depends on more than the question"
     if report.minimal:
         return "minimal: with any one robot, resource, edge or unit of a number less it does not fail"
     return f"perhaps not minimal: the {report.options.shrink_seconds:g} s for shrinking (--shrinking) were over"
