@@ -195,7 +195,6 @@ Definition unless_present (c : list signed) (id r t : Z) : bool :=
 
 (** The clause holds if the robot does not count in the limit at the tick. *)
 Definition unless_counted (c : list signed) (id key t : Z) : bool :=
-  is_described id t &&
   (existsb (fun l => match l with (false, Counted id' key' t') => (id' =? id) && (key' =? key) && (t' =? t) | _ => false end)
      c ||
    match Map.find key (limit_at w) with

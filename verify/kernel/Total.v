@@ -400,15 +400,15 @@ Hypothesis described : forall m, In m (crew w) -> Describes m (routes (robot_id 
 Definition route (a : robot) : list visit := routes (robot_id a).
 Definition route_cost (a : robot) : Z := ends (robot_id a) - release a.
 Definition delay (m : member) : Z := route_cost (fst m) - shortest (snd m).
-(** The robot counts on its route: it is in a place of the limit at the tick, or was so the gap before. *)
+(** The robot counts on its route: it is in a place of the limit at the tick, or was so the gap before, as far as it is
+    described. *)
+Definition is_there (a : robot) (place t : Z) : bool := is_described w (robot_id a) t && is_in i a (route a) place t.
 Definition counts_on_route (key t : Z) (a : robot) : bool :=
   match Map.find key (limit_at w) with
-  | Some (_, l) =>
-      existsb (fun place => is_in i a (route a) place t || is_in i a (route a) place (t - gap i)) (limit_places l)
+  | Some (_, l) => existsb (fun place => is_there a place t || is_there a place (t - gap i)) (limit_places l)
   | None => false
   end.
-Definition is_present (key t : Z) (m : member) : bool :=
-  is_described w (robot_id (fst m)) t && counts_on_route key t (fst m).
+Definition is_present (key t : Z) (m : member) : bool := counts_on_route key t (fst m).
 Definition presence (key t : Z) (m : member) : Z := Z.b2z (is_present key t m).
 
 (** The sum over the robots whose keys are in a range. *)
@@ -544,14 +544,17 @@ Qed.
 
 Lemma kept_unless_counted key t : unless_counted w c id key t = true -> counts_on_route key t a = false -> Kept c.
 Proof.
-  unfold unless_counted. intros H F. apply andb_true_iff in H as [H _]. apply andb_true_iff in H as [_ H].
+  unfold unless_counted. intros H F. apply andb_true_iff in H as [H _].
   apply orb_true_iff in H as [H | H]; [look H l; shown; exact F |].
   unfold counts_on_route in F. destruct (Map.find key (limit_at w)) as [[k l] |]; [| discriminate].
   apply existsb_exists in H as (place & P & H).
-  assert (N : is_in i a (route a) place t || is_in i a (route a) place (t - gap i) = false).
+  assert (N : is_there a place t || is_there a place (t - gap i) = false).
   { apply not_true_iff_false. intros T. apply not_true_iff_false in F. apply F. apply existsb_exists. eauto. }
-  apply orb_false_iff in N as [N M]. apply orb_true_iff in H as [H | H]; [exact (kept_unless_present _ _ H N) |].
-  apply andb_true_iff in H as [_ H]. rewrite (longer_is_right i asked w tabled) in H. exact (kept_unless_present _ _ H M).
+  assert (Away : forall u, unless_present w c id place u = true -> is_there a place u = false -> Kept c).
+  { intros u U V. apply (kept_unless_present _ _ U). unfold is_there in V. unfold unless_present in U.
+    apply andb_true_iff in U as [U _]. rewrite (proj2 found_member), U in V. exact V. }
+  apply orb_false_iff in N as [N M]. apply orb_true_iff in H as [H | H]; [exact (Away _ H N) |].
+  apply andb_true_iff in H as [_ H]. rewrite (longer_is_right i asked w tabled) in H. exact (Away _ H M).
 Qed.
 
 Lemma kept_at_the_start : if_free w c id (start a) (release a + need i a (start a)) = true ->
@@ -755,13 +758,11 @@ Qed.
 
 (** Who counts in a limit that a clause speaks of. *)
 Lemma count_is_of_a_robot c id key t : unless_counted w c id key t = true -> exists a g,
-  Map.find id (member_of w) = Some (a, g) /\ is_described w (robot_id a) t = true /\
-  (counts_on_route key t a = false -> Kept c).
+  Map.find id (member_of w) = Some (a, g) /\ (counts_on_route key t a = false -> Kept c).
 Proof.
-  intros H. pose proof H as K. unfold unless_counted in K. apply andb_true_iff in K as [K F].
-  apply andb_true_iff in K as [D _]. apply some_robot in F as (a & g & F & _). exists a, g. split; auto. split.
-  - rewrite (proj2 (found_member a g id F)). exact D.
-  - apply (kept_unless_counted a g id F c key t H).
+  intros H. pose proof H as K. unfold unless_counted in K. apply andb_true_iff in K as [_ F].
+  apply some_robot in F as (a & g & F & _). exists a, g. split; auto.
+  apply (kept_unless_counted a g id F c key t H).
 Qed.
 
 Lemma kept_by_adding_robots c key t : adds (robots_if_false w key t) (true_if_robots key t) c = true -> Kept c.
@@ -776,13 +777,13 @@ Proof.
       end = Some (from, upto, n) -> is_true (snd l) = fst l \/ n <= presences key t from upto).
     { intros H. destruct (unless_counted w [l] (robot_of_meaning (snd l)) key t) eqn:U;
         [| destruct (Map.find _ _) as [[? ?] |]; discriminate].
-      destruct (count_is_of_a_robot _ _ _ _ U) as (a & g & Found & D & K). rewrite Found in H.
+      destruct (count_is_of_a_robot _ _ _ _ U) as (a & g & Found & K). rewrite Found in H.
       injection H as <- <- <-.
       destruct (counts_on_route key t a) eqn:In_it.
       - right. pose proof (found_member a g _ Found) as [M E'].
         pose proof (one_is_in_its_range (fun m => seat (snd m)) (presence key t) (a, g)
           (fun m _ => presences_are_not_negative key t m) M) as L.
-        unfold presence at 1, is_present in L. cbn [fst snd] in L. rewrite D, In_it in L. exact L.
+        unfold presence at 1, is_present in L. cbn [fst snd] in L. rewrite In_it in L. exact L.
       - left. destruct (K eq_refl) as (l' & [<- | []] & T). exact T. }
     unfold robots_if_false in E. destruct l as [[|] []];
       try (apply One, E).
@@ -802,16 +803,15 @@ Proof.
 Qed.
 
 (** A robot that counts on its route counts. *)
-Lemma robot_on_route_counts m key k l t : In m (crew w) -> is_described w (robot_id (fst m)) t = true ->
+Lemma robot_on_route_counts m key k l t : In m (crew w) ->
   Map.find key (limit_at w) = Some (k, l) -> counts_on_route key t (fst m) = true ->
   Counts i (plans s) (robot_id (fst m)) l t.
 Proof.
-  intros M D F C. unfold counts_on_route in C. rewrite F in C. apply existsb_exists in C as (place & P & C).
+  intros M F C. unfold counts_on_route in C. rewrite F in C. apply existsb_exists in C as (place & P & C).
   assert (G : 0 <= gap i) by (unfold gap; destruct (following_is_forbidden i); lia).
-  apply orb_true_iff in C as [C | C].
+  apply orb_true_iff in C as [C | C]; apply andb_true_iff in C as [D C].
   - exists place, 0. rewrite Z.sub_0_r. repeat split; auto; [lia |]. apply robot_inside_occupies; auto.
   - exists place, (gap i). repeat split; auto; [lia |]. apply robot_inside_occupies; auto.
-    unfold is_described in *. destruct (seen_tick w (robot_id (fst m))); auto. apply Z.leb_le in D. apply Z.leb_le. lia.
 Qed.
 
 Lemma presences_keep_capacity key k l t first end_ : Map.find key (limit_at w) = Some (k, l) ->
@@ -828,7 +828,7 @@ Proof.
     destruct (is_present key t m); simpl; auto. constructor; auto. intros H. apply Hn.
     apply in_map_iff in H as (x & E & H). apply filter_In in H as [H _]. apply in_map_iff. eauto.
   - intros id H. apply in_map_iff in H as (m & <- & H). apply filter_In in H as [H K].
-    apply andb_true_iff in K as [D K]. apply (robot_on_route_counts m key k l t); auto.
+    apply (robot_on_route_counts m key k l t); auto.
 Qed.
 
 Lemma kept_by_capacity c :
@@ -843,8 +843,8 @@ Qed.
 Lemma kept_by_room_for_one c one other key t : one <> other -> room_below w key 2 = true ->
   unless_counted w c one key t = true -> unless_counted w c other key t = true -> Kept c.
 Proof.
-  intros D R U V. destruct (count_is_of_a_robot _ _ _ _ U) as (a & g & F & Da & K).
-  destruct (count_is_of_a_robot _ _ _ _ V) as (b & h & G & Db & L).
+  intros D R U V. destruct (count_is_of_a_robot _ _ _ _ U) as (a & g & F & K).
+  destruct (count_is_of_a_robot _ _ _ _ V) as (b & h & G & L).
   destruct (counts_on_route key t a) eqn:A; [| auto]. destruct (counts_on_route key t b) eqn:B; [| auto]. exfalso.
   destruct (found_member a g one F) as [Ma Ea]. destruct (found_member b h other G) as [Mb Eb].
   unfold room_below in R. destruct (Map.find key (limit_at w)) as [[k x] |] eqn:X; [| discriminate]. decided.
@@ -962,7 +962,7 @@ Proof.
   - apply existsb_exists in H as (l & Hl & H). destruct l as [[|] []]; try discriminate. eexists. eauto.
   - apply kept_by_adding_delays, H.
   - decided. match goal with K : unless_counted _ _ _ _ _ = true |- _ => rename K into Unless end.
-    destruct (count_is_of_a_robot _ _ _ _ Unless) as (a & g & Found & _ & K).
+    destruct (count_is_of_a_robot _ _ _ _ Unless) as (a & g & Found & K).
     destruct (counts_on_route key tick a) eqn:Inside; auto.
     match goal with E : existsb _ _ = true |- _ => apply existsb_exists in E as (l & Hl & E) end.
     destruct l as [[|] []]; try discriminate. decided. subst. eexists. split; [eassumption |].
