@@ -15,7 +15,19 @@ from tests.verify.tiny import TINY
 
 from carp_optimum.optimum import optimum
 from carp_optimum.sat.proving import write_proof
-from carp_spec import AfterGoal, Instance, Refusal, Resource, ResourceGraph, Robot, Solution, Verdict, Violation, judge
+from carp_spec import (
+    AfterGoal,
+    Instance,
+    Refusal,
+    Resource,
+    ResourceGraph,
+    Robot,
+    Solution,
+    Stop,
+    Verdict,
+    Violation,
+    judge,
+)
 from carp_spec.documents.instances import write_instance
 from carp_verify.bound.rules import ContradictionError
 from carp_verify.optimum.proof import FILES, ProofError, verify_proof
@@ -192,8 +204,18 @@ def test_a_proof_is_read_and_searched_up_to_the_limits_alone(
     monkeypatch.setattr(f"carp_verify.optimum.proof.{limit}", most)
     assert verify_proof(proof).cost == 13
     monkeypatch.setattr(f"carp_verify.optimum.proof.{limit}", most - 1)
-    with pytest.raises(ProofError, match=f"it has more than {most - 1} bytes|a robot and a resource are {most}"):
+    with pytest.raises(ProofError, match=f"it has more than {most - 1} bytes|and a resource are {most}"):
         verify_proof(proof)
+
+
+def test_each_stop_of_a_robot_counts_in_the_size_of_a_proof(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    instance = crossing()
+    first, *others = instance.robots
+    stops = replace(instance, robots=(replace(first, stops=(Stop(first.start), *first.stops)), *others))
+    prove(stops, tmp_path)
+    monkeypatch.setattr("carp_verify.optimum.proof.LARGEST_TABLE", 5 * 9 - 1)
+    with pytest.raises(ProofError, match="a stop of a robot and a resource are 45"):
+        verify_proof(tmp_path)
 
 
 @pytest.mark.parametrize(

@@ -157,10 +157,10 @@ def verify_proof(proof: Path | ProofFiles, instance: Instance | None = None) -> 
     proved = read_instance(read.contents["instance.json"])
     if asked not in (None, write_instance(proved)):
         raise ProofError("instance.json", "it is another instance than the one given")
-    size = len(proved.robots) * len(proved.graph.resources)
+    size = sum(len(robot.stops) for robot in proved.robots) * len(proved.graph.resources)
     is_made = not isinstance(read.manifest, UnsolvableManifest) or isinstance(read.manifest.obstacle, Clauses)
     if is_made and size > LARGEST_TABLE:
-        reason = f"its pairs of a robot and a resource are {size}, and at most {LARGEST_TABLE} are allowed"
+        reason = f"its pairs of a stop of a robot and a resource are {size}, and at most {LARGEST_TABLE} are allowed"
         raise ProofError("instance.json", reason)
     if isinstance(read.manifest, UnsolvableManifest):
         return _verify_obstacle(proved, read.manifest.obstacle, read.contents)
