@@ -191,8 +191,11 @@ def test_a_query_with_many_labels_or_stays_is_answered(labels: int, stays: int) 
 
 @pytest.mark.parametrize("beyond", [False, True])
 def test_the_limit_of_a_query_is_that_of_carp_verify(beyond: bool) -> None:
-    """A robot comes or leaves at 4,000 ticks in the first resource, and at 4,001, with tick 0, in the other."""
-    labels = LARGEST_CHECK // (1 + 4_000 + 4_001) + beyond
+    """A robot comes or leaves at 4,000 ticks in the first resource, and at 4,001, with tick 0, in the other.
+
+    The labels count those of their own resource once more, and two resources with two moves are looked at first.
+    """
+    labels = (LARGEST_CHECK - 4) // (1 + 4_000 + 4_000 + 4_001) + beyond
     request = json.loads(query(labels, 4_000))
     documents = [json.dumps(request[name]).encode() for name in ("instance", "solution", "certificate")]
     instance, solution = read_instance(documents[0]), read_solution(documents[1])

@@ -23,8 +23,8 @@ from tests.verify.query_examples import (
 import carp_optimized.certifying
 import carp_reference
 import carp_verify.query.rules
-from carp_spec import Plan, Robot, Visit
-from carp_spec.documents.query_certificates import ServedLayer, certificate_of
+from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, Robot, Solution, Visit
+from carp_spec.documents.query_certificates import QUERY_FORMAT, QueryCertificateDocument, ServedLayer, certificate_of
 from carp_spec.model import Following, Group
 from carp_spec.windows import Window
 from carp_verify.query.verify import Traffic, verify_query
@@ -184,6 +184,19 @@ def test_a_size_that_is_too_large_is_refused_before_anything_is_looked_at(monkey
     far = msgspec.structs.replace(certificate, labels=certificate.labels * 3_000_000)
     monkeypatch.undo()
     assert question.rule_broken(far) == "query-certificate/size"
+
+
+def test_labels_that_lead_nowhere_and_the_moves_of_each_stop_count_in_the_size(monkeypatch: pytest.MonkeyPatch) -> None:
+    one_way = ResourceGraph((Resource("s"), Resource("g")), (("s", "g"),), directed=True)
+    instance = Instance(one_way, (Robot("r", "s", "g"),))
+    labels, potential = (("g", 1),) * 10, (("s", 1), ("g", 0))
+    certificate = QueryCertificateDocument(QUERY_FORMAT, "r", 0, 1, labels, potential)
+    nobody = Solution((), (), ("r",))
+    monkeypatch.setattr(carp_verify.query.rules, "LARGEST_CHECK", 10 + 10 + 3)
+    assert verify_query(instance, nobody, certificate) == 1
+    monkeypatch.setattr(carp_verify.query.rules, "LARGEST_CHECK", 10 + 10 + 3 - 1)
+    with pytest.raises(Refusal, match="23 windows and moves"):
+        verify_query(instance, nobody, certificate)
 
 
 def test_labels_and_potentials_of_resources_that_there_are_not_mean_nothing() -> None:

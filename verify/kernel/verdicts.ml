@@ -83,6 +83,7 @@ module Ticks = Set.Make (Z)
 (* What carp_verify would look at for the certificates, and what the kernel would. *)
 let looks_and_work (read : Reading.instance) plans (queries : Reading.query list) =
   let onwards, _ = Search.moves_of read.instance in
+  let moves = Hashtbl.fold (fun _ targets total -> total + List.length targets) onwards 0 in
   let count table key = Option.value ~default:0 (Hashtbl.find_opt table key) in
   let increase table key = Hashtbl.replace table key (count table key + 1) in
   let stays = Hashtbl.create 1024 and changes = Hashtbl.create 1024 in
@@ -117,6 +118,7 @@ let looks_and_work (read : Reading.instance) plans (queries : Reading.query list
     let layers = query.query_certificate.layers in
     let label (place, _) = increase labels place in
     List.iter (fun (layer : QueryCertificate.layer) -> List.iter label layer.labels) layers;
+    let looks = looks + (List.length layers * (List.length read.instance.resources + moves)) in
     let work = work + (List.length layers * List.length read.instance.edges * 2) in
     let of_place place number (looks, work) =
       if not (is_resource place) then (looks + number, work)
@@ -124,7 +126,7 @@ let looks_and_work (read : Reading.instance) plans (queries : Reading.query list
         let target (looks, work) s =
           (looks + size place + size s, work + size place + (size s * (count labels s + stays_around place + 1)))
         in
-        let one_looks, one_work = List.fold_left target (1, 1) (Search.resources_to onwards place) in
+        let one_looks, one_work = List.fold_left target (1 + size place, 1) (Search.resources_to onwards place) in
         (looks + (number * one_looks), work + (number * one_work))
     in
     Hashtbl.fold of_place labels (looks, work)

@@ -95,8 +95,8 @@ def is_closed(can_end: bool, entries: Iterable[tuple[int, int | None]]) -> bool:
 
 @rule(
     "query-certificate/size",
-    "The labels, each counted with the windows and the committed moves that are looked at from it, are at most "
-    f"{LARGEST_CHECK}.",
+    "The labels, each counted with the windows and the committed moves that are looked at in and from it, and the "
+    f"resources and moves, counted for each stop left, are at most {LARGEST_CHECK} together.",
     DESIGN,
 )
 def size_fits(size: int) -> bool:

@@ -269,8 +269,11 @@ class Check:
         graph, size = self.instance.graph, self.traffic.size
         labels = [resource for layer in self.layers for resource, _ in layer.labels]
         resources: Iterable[ResourceId] = {each for each in labels if each in graph.resource}
-        steps = {each: sum(size(each) + size(target) for target in graph.successors[each]) for each in resources}
-        total = len(labels) + sum(steps.get(resource, 0) for resource in labels)
+        steps = {
+            each: size(each) + sum(size(each) + size(target) for target in graph.successors[each]) for each in resources
+        }
+        moves = sum(1 + len(targets) for targets in graph.successors.values())
+        total = len(labels) + sum(steps.get(resource, 0) for resource in labels) + len(self.layers) * moves
         message = f"there would be {total} windows and moves to look at, and at most {LARGEST_CHECK} are allowed"
         _require(size_fits, size_fits(total), "$.labels", message)
 
