@@ -102,7 +102,8 @@ def test_a_full_disk_is_told_and_the_run_goes_on_once_there_is_room(tmp_path: Pa
     assert run.returncode == 1
     assert "cannot be written" in run.stderr
     assert "continues from there" in run.stderr
-    assert run.stderr.count("\n") == 1
+    told = [line for line in run.stderr.splitlines() if "resource_tracker" not in line]  # joblib's, now and then
+    assert len(told) == 1
     assert 0 < _rows(path) < 120
     assert_goes_on(path)
 
