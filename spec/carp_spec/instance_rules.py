@@ -32,7 +32,11 @@ def _wrong_numbers(path: str, entries: Sequence[Resource | Robot | Group], name:
             yield f"{path}[{position}].{name}", f"the {name} must be a whole number of at least {least}, not {value!r}"
 
 
-@fault_rule("instance/resource-id", "Resource ids are strings or whole numbers, and no two are the same.", DESIGN)
+@fault_rule(
+    "instance/resource-id",
+    "Resource ids are text that UTF-8 can express, or whole numbers; no two are the same.",
+    DESIGN,
+)
 def resource_ids_are_unique(instance: Instance) -> Found:
     return _wrong_ids("$.graph.nodes", instance.graph.resources)
 
@@ -82,8 +86,8 @@ def edges_join_resources(instance: Instance) -> Found:
 
 @fault_rule(
     "instance/group",
-    "Group ids are strings or whole numbers, and no two are the same. A group names at least one resource, each of the "
-    "graph and each once; its capacity is a whole number of at least 1.",
+    "Group ids are text that UTF-8 can express, or whole numbers; no two are the same. A group names at least one "
+    "resource, each of the graph and each once; its capacity is a whole number of at least 1.",
     DESIGN,
 )
 def groups_are_of_resources(instance: Instance) -> Found:
@@ -102,7 +106,9 @@ def groups_are_of_resources(instance: Instance) -> Found:
                 yield f"{path}[{place}]", f"{resource!r} must be named once, and is entry {first_at[resource]} too"
 
 
-@fault_rule("instance/robot-id", "Robot ids are strings or whole numbers, and no two are the same.", DESIGN)
+@fault_rule(
+    "instance/robot-id", "Robot ids are text that UTF-8 can express, or whole numbers; no two are the same.", DESIGN
+)
 def robot_ids_are_unique(instance: Instance) -> Found:
     return _wrong_ids("$.robots", instance.robots)
 

@@ -353,7 +353,7 @@ def far_away(x: int) -> Instance:
         (lambda: carproof.read_movingai(b"", b"", -1), "movingai/scenario", "$.agents"),
         (lambda: carproof.conforms(carproof.plan, examples=-1), "program/questions", "$.examples"),
         (lambda: carproof.conforms(carproof.plan, without=NONE), "document/shape", "$.without"),
-        (lambda: carproof.conforms(carproof.plan, large=NONE), "request/limit", "$.limit"),
+        (lambda: carproof.conforms(carproof.plan, large=NONE), "request/limit", "$.large"),
         (lambda: carproof.plan_within(far_away(10**20), iterations=1), "limit/ticks", "$.graph.nodes[0].x"),
         (lambda: carproof.plan(replace(RIGHT, robots=(HALF,))), "instance/robot-id", "$.robots[0].id"),
     ],

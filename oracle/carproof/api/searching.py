@@ -11,12 +11,10 @@ from carp_optimum.optimum import optimum as found
 from carp_optimum.sat.core_guided import Optimum
 from carp_spec import Instance, Planner, Refusal
 from carp_spec.documents.bounds import BoundDocument
-from carp_spec.inputs.options import PROCESSES, SEARCH_SECONDS
+from carp_spec.inputs.options import MOST_PROCESSES, PROCESSES, SEARCH_SECONDS
 from carp_spec.rule import is_between
 from carp_spec.shapes import require_each
 from carproof.engines import warm
-
-MOST_PROCESSES = 2
 
 
 def optimum(instance: Instance, limit: float = SEARCH_SECONDS, *, processes: int = PROCESSES) -> Optimum:
@@ -26,7 +24,7 @@ def optimum(instance: Instance, limit: float = SEARCH_SECONDS, *, processes: int
     answer is the same. Raises `Refusal` for a wrong limit, and if the formula outgrows the memory.
     """
     if not is_between(processes, 1, MOST_PROCESSES):
-        message = f"it must be a whole number of at least 1 and at most {MOST_PROCESSES}, not {processes!r}"
+        message = f"it must be a whole number between 1 and {MOST_PROCESSES}, not {processes!r}"
         raise Refusal("option", "$.processes", "request/limit", message)
     warm()
     return found(instance, limit, processes=processes)

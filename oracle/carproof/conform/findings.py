@@ -159,7 +159,10 @@ def all_arrive(standing: Sequence[RobotId]) -> bool:
 
 
 RIGHT_QUESTIONS = Code(
-    "program/questions", "The level and the features left out, by which a function is judged, are known ones.", DESIGN
+    "program/questions",
+    "The level and the features left out, by which a function is judged, are known ones; the number of examples and "
+    "the seed are whole numbers of at least 0.",
+    DESIGN,
 )
 PROGRAM_RULES: tuple[Rule[..., Any] | Code, ...] = (
     is_alive,

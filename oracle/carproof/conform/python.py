@@ -43,7 +43,7 @@ def conforms(  # noqa: PLR0913 - the options of the command
     """
     require("hypothesis", "pysat")
     require_each([*without] if isinstance(cast("object", without), Collection) else without, str, "$.without")
-    require_limits(limit=large)
+    require_limits(large=large)
     levels = [each.label for each in WHOLE_LEVELS]
     for option, each, known in (("level", level, levels), *(("without", each, [*FEATURES]) for each in without)):
         if each not in known:

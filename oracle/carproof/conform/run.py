@@ -169,8 +169,8 @@ class Report:
             self.large[label(outcome)] += 1
         else:
             self.outcomes.append(outcome)
-        is_large = outcome.case.stage == "large" and self.options.level in (Level.COMPLETE, Level.OPTIMAL)
-        if outcome.answer is not None and outcome.is_judged and not is_large:  # the rules alone judge a large one there
+        by_rules_alone = outcome.case.stage == "large" and self.options.level in (Level.COMPLETE, Level.OPTIMAL)
+        if outcome.answer is not None and outcome.is_judged and not by_rules_alone:
             self.judged[outcome.case.op] += 1
             if outcome.case.op in self.options.ops:
                 self.extent.add(outcome)

@@ -11,7 +11,6 @@ from math import isqrt
 
 from carproof.layouts.located import LARGEST, Tree
 
-NO_FEATURES: Mapping[str, str] = {}
 SILENT = frozenset(("<>", "text", "xmlns", "xmlns:xsi", "xsi:schemaLocation"))
 """Of XML, what says nothing of a layout."""
 

@@ -13,8 +13,8 @@ from carp_spec.rule import DESIGN, Found, fault_rule, is_between
 LARGEST_SAMPLE = 1_000_000
 SEARCH_SECONDS = 60
 """The time of a search for an optimum where none is given."""
-PROCESSES = 1
-"""The processes of a search for an optimum, unless two are asked for."""
+PROCESSES, MOST_PROCESSES = 1, 2
+"""The processes of a search for an optimum, unless two are asked for, which is the most."""
 BOUND_SECONDS = 10
 """The time of a search for a bound where neither a time nor a number of steps is given."""
 
@@ -57,7 +57,7 @@ def require_polish_options(iterations: object, seconds: object, seed: object) ->
 
 
 def require_limits(**limits: object) -> None:
-    """Raise `Refusal` unless each limit, by its name, is a number of at least 0, or `None`; a `limit` is always given.
+    """Raise `Refusal` unless each limit, by its name, is a number of at least 0, or `None` but for `limit` and `large`.
 
     Steps and the most violations are whole numbers. With a limit of 0, which the protocol refuses, a search ends at
     once.
@@ -65,7 +65,7 @@ def require_limits(**limits: object) -> None:
     for name, limit in limits.items():
         is_whole = name in ("steps", "most")
         kinds, largest = ((int,), maxsize) if is_whole else ((int, float), float_info.max)
-        is_free = limit is None and name != "limit"
+        is_free = limit is None and name not in ("limit", "large")
         if not (is_free or (type(limit) in kinds and 0 <= cast("float", limit) <= largest)):
             message = f"it must be a {'whole ' if is_whole else ''}number of at least 0, not {shown(limit)}"
             raise Refusal("request", f"$.{name}", "request/limit", message)

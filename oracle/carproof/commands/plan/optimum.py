@@ -9,7 +9,7 @@ import click
 from carp_spec import Instance
 from carp_spec.documents.decoding import write
 from carp_spec.documents.solutions import write_solution
-from carp_spec.inputs.options import PROCESSES
+from carp_spec.inputs.options import MOST_PROCESSES, PROCESSES
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, print_document, read_instance_file, write_whole
 from carproof.command_line.options import examples, instance_argument, limit_option, output_options
@@ -35,7 +35,9 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "cost", "answer", "time")
 )
 @instance_argument
 @limit_option
-@click.option("--processes", type=click.IntRange(1, 2), default=PROCESSES, help="Two search faster on two cores.")
+@click.option(
+    "--processes", type=click.IntRange(1, MOST_PROCESSES), default=PROCESSES, help="Two search faster on two cores."
+)
 @click.option("--proof", type=click.Path(file_okay=False, path_type=Path), help="Write a proof into this folder.")
 @output_options
 def command(*, instance: str, limit: int, processes: int, proof: Path | None, output: Output) -> Answer:
