@@ -23,7 +23,7 @@ SIDES = {100: 20, 1000: 64, 10_000: 200}
 """Of the grids, by the number of robots."""
 SECONDS = 10
 PHASES = {
-    "distances": "_find_distances",
+    "distances": "_with_distances",
     "LaCAM": "_searched",
     "guides": "guides_of",
     "prioritized planning": "planned_in_order",

@@ -89,6 +89,11 @@ def can_begin(crowd: Crowd) -> bool:
     return bool(are_apart(crowd).all() and (ways_of(crowd) < FAR).all())
 
 
+def first(crowd: Crowd, robots: int) -> Crowd:
+    """The first robots of a crowd."""
+    return crowd._replace(start=crowd.start[:robots], goal=crowd.goal[:robots], distance=crowd.distance[:robots])
+
+
 def only(crowd: Crowd, robots: npt.NDArray[np.bool_]) -> Crowd:
     """Some of the robots of a crowd."""
     if robots.all():

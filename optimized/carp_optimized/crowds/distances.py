@@ -62,7 +62,7 @@ landmarks_at = dereference(Landmarks)
 
 
 @entry
-def estimate(native: Native[Crowd], landmarks: Native[Landmarks], order: Ints, begin: int, end: int) -> None:
+def estimate(landmarks: Native[Landmarks], native: Native[Crowd], order: Ints, begin: int, end: int) -> None:
     """Estimate the distances of the robots `order[begin:end]`.
 
     Nothing is known of places that are not connected to the first landmark: they count as too far away.
@@ -93,7 +93,7 @@ def are_right(crowd: Crowd, landmarks: Landmarks) -> bool:
     first = crowd.distance[:PART]
     measured = first.copy()
     robots = np.arange(len(first), dtype=np.int32)
-    estimate(Native(crowd), Native(landmarks), robots, 0, robots.size)
+    estimate(Native(landmarks), Native(crowd), robots, 0, robots.size)
     share = np.mean(first == measured)
     first[:] = measured
     return bool(share >= RIGHT)

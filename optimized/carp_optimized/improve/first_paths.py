@@ -6,7 +6,7 @@ others, and those are planned again. If that is not much better than LaCAM, LaCA
 ends, as many robots as possible are planned one after the other.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from math import inf
 
 import numpy as np
@@ -29,6 +29,8 @@ If LaCAM has plans, guides may take until `GUIDED` and LaCAM with them until `LA
 little. If nothing has found plans for all, LaCAM goes on until `LAST`, and what is left is for prioritized planning of
 as many as possible.
 """
+SURE = 64
+"""After so many steps of LaCAM it is known how long a step takes."""
 MISSES = 8
 """Prioritized planning gives up when robots have found no path this often, on average."""
 HOPE, MANY = 8, 8
@@ -58,23 +60,30 @@ def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
     Paths by LaCAM are more promising unless the others are much better.
     """
     search = Search(crowd, seed)
-    by_steps = _searched(search, STEPS, lambda: timer.goes_on(GUIDING))
+    by_steps = _searched(search, STEPS, timer, GUIDING)
+    if not by_steps and search.outcome == RUNNING and search.tried < STEPS and timer.goes_on(GUIDING):
+        return [_as_many_in_order(crowd, timer, seed)]
     in_order = _best_in_order(crowd, timer, by_steps, seed)
     has_all = bool(in_order.size.all())
     if has_all and _is_better(crowd, in_order, by_steps):
         return [in_order, *by_steps]
     until, last = (GUIDED, LATEST) if by_steps else (GUIDING, GUIDED)
     for guides in guides_of(crowd, lambda: timer.goes_on(until)):
-        found = _searched(Search(crowd, seed, guides), STEPS, lambda: timer.goes_on(last))
+        found = _searched(Search(crowd, seed, guides), STEPS, timer, last)
         if not found:
             break
         by_steps += found
     if not by_steps and not has_all:
-        by_steps = _searched(search, STEPS if timer.seconds is None else NO_LIMIT, lambda: timer.goes_on(LAST))
+        by_steps = _searched(search, STEPS if timer.seconds is None else NO_LIMIT, timer, LAST)
     if has_all or by_steps:
         return sorted(by_steps, key=total_of)[: 1 if has_all else 2] + [in_order] * has_all
-    later = planned_in_order(crowd, timer, seed, ALL, GREEDY, UNTIL_FOUND, ways_of(crowd))
+    later = _as_many_in_order(crowd, timer, seed)
     return [max(in_order, later, key=lambda each: int(np.count_nonzero(each.size)))]
+
+
+def _as_many_in_order(crowd: Crowd, timer: Clock, seed: int) -> Paths:
+    """The paths of as many robots as there is time for."""
+    return planned_in_order(crowd, timer, seed, ALL, GREEDY, UNTIL_FOUND, ways_of(crowd), is_part=True)
 
 
 def _best_in_order(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int) -> Paths:
@@ -141,22 +150,36 @@ def _is_better(crowd: Crowd, in_order: Paths, by_steps: Sequence[Paths]) -> bool
     return all(3 * (total_of(in_order) - least) < 2 * (total_of(each) - least) for each in by_steps)
 
 
-def _searched(search: Search, steps: int, goes_on: Callable[[], bool]) -> list[Paths]:
-    """The paths of all robots by LaCAM, if they are found in that many steps and in time."""
-    last = min(search.tried + steps, NO_LIMIT)
-    while search.outcome == RUNNING and search.tried < last and goes_on():
+def _searched(search: Search, steps: int, timer: Clock, until: int) -> list[Paths]:
+    """The paths of all robots by LaCAM, if they are found in that many steps and in time.
+
+    No paths end in fewer steps than the longest way has. If these take too long, the search is given up.
+    """
+    first, began = search.tried, timer.spent
+    last = min(first + steps, NO_LIMIT)
+    while search.outcome == RUNNING and search.tried < last and timer.goes_on(until):
         search.go(8)
+        done = search.tried - first
+        if done >= SURE and (timer.spent - began) * (search.longest - search.tried) > timer.left(LAST) * done:
+            break
     return [] if search.paths is None else [search.paths]
 
 
-def planned_in_order(crowd: Crowd, timer: Clock, seed: int, until: int, greed: int, effort: int, keys: Ints) -> Paths:
-    """The paths of a pass of prioritized planning, and then of the robots that it missed, as long as they get fewer."""
+def planned_in_order(
+    crowd: Crowd, timer: Clock, seed: int, until: int, greed: int, effort: int, keys: Ints, *, is_part: bool = False
+) -> Paths:
+    """The paths of a pass of prioritized planning, and then of the robots that it missed, as long as they get fewer.
+
+    If paths of a part of the robots are of use, time is left for the visits of those alone.
+    """
     robots = crowd.start.size
     room = max(LONGEST, 2 * int(ways_of(crowd).max()))
     improving = Improving(crowd, no_paths(robots, room), seed)
     begun, time = timer.spent, timer.seconds or inf
 
     def goes_on(*, is_likely: bool) -> bool:
+        if is_part:
+            timer.reserve(int(improving.rounds.paths.size.sum()))
         return timer.goes_on(until) and (is_likely or HOPE * (timer.spent - begun) < time)
 
     order = np.argsort(keys, kind="stable").astype(np.int32)

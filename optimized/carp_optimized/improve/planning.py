@@ -13,7 +13,7 @@ from time import perf_counter
 import numpy as np
 
 from carp_optimized.crowds.checking import require_lawful
-from carp_optimized.crowds.crowd import FAR, Crowd, are_apart, crowd_of, is_stepwise, only, ways_of
+from carp_optimized.crowds.crowd import FAR, Crowd, are_apart, crowd_of, first, is_stepwise, only, ways_of
 from carp_optimized.crowds.distances import PART, are_right, estimate, landmarks_of, measure, near
 from carp_optimized.crowds.improving import LONGER, arrivals, total_of
 from carp_optimized.crowds.stays import Paths, no_paths, solution_along
@@ -26,11 +26,11 @@ from carp_spec import Instance, Solution
 
 LONG, MEASURING = 1 / 8, 0.7
 """The parts of the time in which all distances must be measured where estimates are as good, and where not."""
-NEAREST = 1 / 2
-"""Else those of the nearest robots are found until this part is over; the others are left out."""
+NEAREST = 2 / 3
+"""Else those of the nearest robots are found until this part of what their visits leave is over; no others."""
 LOADING = 4 * PART
 """The robots after which it is decided: the machine code may have to be loaded first."""
-SAMPLE, SAMPLES, SLOWER = 5000, 4, 3
+SAMPLE, SAMPLES, SLOWER = 5000, 4, 2
 """The least time counts that so many visits take to make; checking and making all takes this many times as long."""
 
 
@@ -65,7 +65,8 @@ def plan_crowd(
     apart = are_apart(crowd)
     rows, crowd = np.flatnonzero(apart), only(crowd, apart)
     timer.visit = time_of_visit(instance, clock, finish)
-    is_measured = _find_distances(crowd, timer)
+    crowd, found, is_measured = _with_distances(crowd, timer)
+    rows = rows[found]
     has_way = ways_of(crowd) < FAR
     rows, crowd = rows[has_way], only(crowd, has_way)
     paths = _paths(crowd, timer, iterations, seed, advance)
@@ -91,12 +92,13 @@ def improve_crowd(
     timer.visit = time_of_visit(instance, clock)
     paths = _paths_of_plans(instance, solution)
     timer.reserve(int(paths.size.sum()))
-    _find_distances(crowd, timer)
-    if (ways_of(crowd) == FAR).any():
+    crowd, found, _ = _with_distances(crowd, timer)
+    if found.size < len(instance.robots) or (ways_of(crowd) == FAR).any():
         return solution
+    paths = Paths(paths.size[found], paths.place[found], paths.enter[found])
     paths = improved(crowd, [paths], None, timer, seed, advance)
     require_lawful(crowd, paths)
-    return solution_along(instance, instance.robots, paths)
+    return solution_along(instance, [instance.robots[row] for row in found], paths)
 
 
 def _paths_of_plans(instance: Instance, solution: Solution) -> Paths:
@@ -112,10 +114,10 @@ def _paths_of_plans(instance: Instance, solution: Solution) -> Paths:
     return paths
 
 
-def _find_distances(crowd: Crowd, timer: Clock) -> bool:
-    """Measure the distances of robots, or estimate them; whether they are measured.
+def _with_distances(crowd: Crowd, timer: Clock) -> tuple[Crowd, Ints, bool]:
+    """The crowd of those robots whose distances there is time to find, which these are, and whether they are measured.
 
-    Robots for which there is no time have no way.
+    Else they are estimated.
     """
     native = Native(crowd)
     robots = np.arange(crowd.start.size, dtype=np.int32)
@@ -127,32 +129,29 @@ def _find_distances(crowd: Crowd, timer: Clock) -> bool:
             ends = timer.spent + (timer.spent - began) * (robots.size - done) / (done - PART)
             if ends > LONG * time:
                 landmarks = landmarks_of(crowd)
-                order = np.argsort(near(crowd, landmarks), kind="stable").astype(np.int32)
+                ways = near(crowd, landmarks)
                 if are_right(crowd, landmarks):
-                    _of_first(crowd, timer, order, partial(estimate, native, Native(landmarks)))
-                    return False
-                if ends > MEASURING * time:
-                    _of_first(crowd, timer, order, partial(measure, native))
-                    break
+                    return *_with_nearest(crowd, timer, ways, partial(estimate, Native(landmarks))), False
+                if ends > MEASURING * (time - timer.visit * int(ways.sum())):
+                    return *_with_nearest(crowd, timer, ways, measure), True
         if timer.spent > MEASURING * time:
-            _leave_out(crowd, robots[done:])
-            break
+            return first(crowd, done), robots[:done], True
         measure(native, robots, done, min(done + PART, robots.size))
-    return True
+    return crowd, robots, True
 
 
-def _of_first(crowd: Crowd, timer: Clock, order: Ints, find: Callable[[Ints, int, int], None]) -> None:
-    """Find the distances of robots in that order, as long as there is time for it."""
+def _with_nearest(
+    crowd: Crowd, timer: Clock, ways: Ints, find: Callable[[Native[Crowd], Ints, int, int], None]
+) -> tuple[Crowd, Ints]:
+    """The crowd of the nearest robots, as many as there is time to find distances for, and which these are."""
+    order = np.argsort(ways, kind="stable").astype(np.int32)
+    nearest = crowd._replace(start=crowd.start[order], goal=crowd.goal[order])
+    native, robots = Native(nearest), np.arange(order.size, dtype=np.int32)
     for done in range(0, order.size, PART):
-        if timer.spent > NEAREST * (timer.seconds or inf):
-            _leave_out(crowd, order[done:])
-            break
-        find(order, done, min(done + PART, order.size))
-
-
-def _leave_out(crowd: Crowd, robots: Ints) -> None:
-    """Note that these robots have no way."""
-    crowd.distance[robots, crowd.start[robots]] = FAR
+        if timer.spent > NEAREST * ((timer.seconds or inf) - timer.visit * int(ways[order[:done]].sum())):
+            return first(nearest, done), order[:done]
+        find(native, robots, done, min(done + PART, order.size))
+    return nearest, order
 
 
 def _paths(crowd: Crowd, timer: Clock, iterations: int | None, seed: int, advance: Advance) -> Paths:

@@ -98,6 +98,11 @@ class Search:
         """The successors tried so far."""
         return int(self._native.fields.nodes.counts[TRIED])
 
+    @property
+    def longest(self) -> int:
+        """The steps that the longest way of a robot takes, and so all ways together at least."""
+        return int(self._native.fields.least.max())
+
     def go(self, steps: int) -> None:
         """Try that many successors, or until `outcome` is not `RUNNING`; if it is `FOUND`, there are `paths`."""
         nodes = self._native.fields.nodes

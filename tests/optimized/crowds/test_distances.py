@@ -19,7 +19,7 @@ def estimated(crowd: Crowd) -> Crowd:
     """The same crowd with estimates for distances."""
     crowd = crowd._replace(distance=np.empty_like(crowd.distance))
     order = np.arange(crowd.start.size, dtype=np.int32)
-    estimate(Native(crowd), Native(landmarks_of(crowd)), order, 0, order.size)
+    estimate(Native(landmarks_of(crowd)), Native(crowd), order, 0, order.size)
     return crowd
 
 

@@ -1,6 +1,7 @@
 """Plans in a given time: they keep the law, never get worse, and come in time."""
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from itertools import count
 from time import process_time
 from typing import Any
@@ -116,11 +117,36 @@ def test_robots_that_nobody_could_plan_do_not_keep_the_others_from_plans() -> No
     assert set(found.unplanned) == {"same start", "same goal"}
 
 
+@dataclass
+class Slow:
+    """A clock on which a look takes a tenth of a second."""
+
+    now: float = 0.0
+
+    def __call__(self) -> float:
+        """The seconds so far."""
+        self.now += 0.1
+        return self.now
+
+    def slowing(self, function: Callable[..., object], seconds: float) -> Callable[..., object]:
+        """The function, which takes so many seconds."""
+
+        def slow(*arguments: object) -> object:
+            self.now += seconds
+            return function(*arguments)
+
+        return slow
+
+
 @pytest.mark.parametrize("design", [5, 20])
-def test_the_nearest_robots_are_planned_where_there_is_no_time_for_all(design: int) -> None:
+def test_the_nearest_robots_are_planned_where_there_is_no_time_for_all(
+    design: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = Slow()
+    for name in ("measure", "estimate"):
+        monkeypatch.setattr(planning, name, clock.slowing(getattr(planning, name), 10))
     instance = on_grid(60, 1200, map=design)
-    ticks = iter(range(10**9))
-    found = plan_crowd(instance, iterations=None, seconds=60, clock=lambda: float(next(ticks)))
+    found = plan_crowd(instance, iterations=None, seconds=300, clock=clock)
     assert judge(instance, found).valid
     assert 50 < len(found.plans) < 1200
     graph = instance.graph.resource
@@ -130,6 +156,27 @@ def test_the_nearest_robots_are_planned_where_there_is_no_time_for_all(design: i
         return abs((start.x or 0) - (goal.x or 0)) + abs((start.y or 0) - (goal.y or 0))
 
     assert max(way(plan.robot) for plan in found.plans) < min(sorted(map(way, found.unplanned))[len(found.plans) :])
+
+
+def test_some_robots_are_planned_where_there_is_no_time_to_write_the_plans_of_all() -> None:
+    clock = Slow()
+
+    def finish(solution: Solution) -> None:
+        clock.now += sum(len(plan.visits) for plan in solution.plans) / 200
+
+    found = plan_crowd(on_grid(60, 1200), iterations=None, seconds=300, clock=clock, finish=finish)
+    finish(found)
+    assert 50 < len(found.plans) < 1200
+    assert clock.now < 320
+
+
+def test_lacam_is_given_up_where_the_steps_of_the_longest_way_take_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock, calls = Slow(), []
+    go = clock.slowing(Search.go, 10)
+    monkeypatch.setattr(Search, "go", lambda *given: calls.append(go(*given)))
+    found = plan_crowd(on_grid(100, 200), iterations=None, seconds=200, clock=clock)
+    assert len(found.plans) == 200
+    assert len(calls) == first_paths.SURE // 8
 
 
 def test_those_measured_so_far_are_planned_where_measuring_takes_longer_than_expected() -> None:
