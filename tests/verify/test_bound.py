@@ -10,6 +10,7 @@ import pytest
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
+from tests.spec.making import instance_on, line, row
 from tests.verify.bound_examples import (
     HORIZON,
     SCALE,
@@ -92,9 +93,8 @@ def test_where_many_ways_meet_a_claim_is_judged_alike_with_shortcuts_and_without
 
 @pytest.mark.parametrize("durations", [*product((1, 6), repeat=4)])
 def test_a_part_of_a_tick_more_than_the_only_way_takes_is_refused(durations: Sequence[int]) -> None:
-    cells = tuple(Resource(place, duration=duration) for place, duration in enumerate(durations))
     robots = (Robot("there", 0, 3), Robot("back", 3, 0, pace=2))
-    lane = Instance(ResourceGraph(cells, ((0, 1), (1, 2), (2, 3))), robots, after_goal="vanish")
+    lane = Instance(row(*durations), robots, after_goal="vanish")
     most = sum(durations[:3]), 2 * sum(durations[1:])
     claims = tuple((robot.id, SCALE * cost) for robot, cost in zip(robots, most, strict=True))
     certificate = priced(lane, bound=sum(most), horizon=0, robots=claims)
@@ -137,10 +137,9 @@ def test_a_bound_that_was_found_is_verified_and_at_most_the_optimum(instance: In
 
 
 def test_prices_find_what_the_shortest_paths_miss() -> None:
-    instance = crossing()
     seen: list[Progress] = []
-    certificate = lower_bound(instance, steps=500, on_step=seen.append)
-    assert (seen[0].bound, certificate.bound, least_total_cost(instance)) == (6, 9, 11)
+    certificate = lower_bound(crossing(), steps=500, on_step=seen.append)
+    assert (seen[0].bound, certificate.bound, least_total_cost(crossing())) == (6, 9, 11)
 
 
 def test_prices_of_groups_find_what_those_of_resources_miss() -> None:
@@ -158,13 +157,14 @@ def test_prices_of_groups_find_what_those_of_resources_miss() -> None:
     assert without.bound == 6
 
 
+LANE = Instance(replace(line("ab"), groups=(Group("block", ("a", "b"), 2),)), (Robot("robot", "a", "b"),))
+
+
 def test_a_price_of_a_group_is_worth_as_much_as_all_robots_in_it_pay() -> None:
-    lane = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),), groups=(Group("block", ("a", "b"), 2),))
-    instance = Instance(lane, (Robot("robot", "a", "b"),))
-    claim = priced(instance, scale=1, robots=(("robot", 1 + 3),), groups=(("block", 0, 3),))
-    assert verify_bound(instance, msgspec.structs.replace(claim, bound=-2)) == -2
+    claim = priced(LANE, scale=1, robots=(("robot", 1 + 3),), groups=(("block", 0, 3),))
+    assert verify_bound(LANE, msgspec.structs.replace(claim, bound=-2)) == -2
     with pytest.raises(Refusal, match="the bound must be -2"):
-        verify_bound(instance, msgspec.structs.replace(claim, bound=3))
+        verify_bound(LANE, msgspec.structs.replace(claim, bound=3))
 
 
 @pytest.mark.parametrize(
@@ -177,10 +177,8 @@ def test_a_price_of_a_group_is_worth_as_much_as_all_robots_in_it_pay() -> None:
     ],
 )
 def test_wrong_prices_of_groups_are_refused(prices: tuple[tuple[str, int, int], ...], rule: str) -> None:
-    lane = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),), groups=(Group("block", ("a", "b")),))
-    instance = Instance(lane, (Robot("robot", "a", "b"),))
     with pytest.raises(Refusal) as refused:
-        verify_bound(instance, priced(instance, robots=(("robot", 0),), groups=prices))
+        verify_bound(LANE, priced(LANE, robots=(("robot", 0),), groups=prices))
     assert (refused.value.rule, refused.value.path) == (rule, f"$.groups[{len(prices) - 1}]")
 
 
@@ -194,11 +192,10 @@ def test_prices_of_groups_for_too_many_resources_are_refused_before_they_are_loo
 
 
 def test_prices_end_early_where_ticks_are_many_and_the_bound_holds_all_the_same() -> None:
-    lane = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),))
-    robots = (Robot("r", "a", "b", release=10**8), Robot("s", "b", "a", release=10**8))
-    certificate = lower_bound(Instance(lane, robots), steps=30)
+    lane = instance_on(line("ab"), Robot("r", "a", "b", release=10**8), Robot("s", "b", "a", release=10**8))
+    certificate = lower_bound(lane, steps=30)
     assert certificate.horizon == 20_000
-    assert verify_bound(Instance(lane, robots), certificate) == certificate.bound >= 2
+    assert verify_bound(lane, certificate) == certificate.bound >= 2
 
 
 def test_a_robot_in_a_resource_pays_its_price_once_and_all_at_most_price_times_capacity() -> None:

@@ -5,6 +5,7 @@ from itertools import product
 
 import msgspec
 import pytest
+from tests.spec.making import instance, line
 from tests.verify.bound_examples import (
     HORIZON,
     Tamper,
@@ -19,7 +20,7 @@ from tests.verify.plain_search import least_cost_of
 from tests.verify.tampered_bounds import TAMPERED
 
 from carp_optimum.bound import lower_bound
-from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
+from carp_spec import Instance, Refusal, Robot
 from carp_spec.documents.bounds import BoundDocument, CutDocument, DeadlinesDocument
 from carp_verify.bound.cuts import formula_of, formula_of_deadlines
 from carp_verify.bound.tariff import Fees, Tariff
@@ -28,18 +29,14 @@ from carp_verify.bound.verify import verify_bound
 
 def test_who_vanishes_drives_on_through_its_goal_where_nothing_else_makes_it_late() -> None:
     """It pays 20 to come by tick 3, and 9 for each tick of waiting: on to c and back to b costs 2 ticks more."""
-    lane = Instance(
-        ResourceGraph((Resource("a"), Resource("b"), Resource("c")), (("a", "b"), ("b", "c"))),
-        (Robot("r", "a", "b"),),
-        after_goal="vanish",
-    )
+    lane = instance(line("abc"), ("a", "b"), after_goal="vanish")
     waits = tuple(("a", tick, 9) for tick in range(1, HORIZON))
     tariff = Tariff(lane, priced(lane, scale=1, resources=waits))
     assert [least_cost_of(tariff, lane.robots[0], 1, Fees([(tick, 20)])) for tick in (0, 1, 2, 3)] == [1, 3, 3, 4]
 
 
 def test_who_waits_pays_for_the_ticks_of_its_waiting_alone() -> None:
-    lane = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
+    lane = instance(line("ab"), ("a", "b"))
     tariff = Tariff(lane, priced(lane, scale=1, resources=(("b", 1, 9),)))
     for tick, least in ((0, 2 + 5), (1, 2 + 5), (2, 2), (3, 2)):
         fees = Fees([(0, 0)], [(tick, {"a"}, 5)])
@@ -47,11 +44,9 @@ def test_who_waits_pays_for_the_ticks_of_its_waiting_alone() -> None:
 
 
 def test_deadlines_find_what_prices_alone_miss_and_carry_their_proofs() -> None:
-    instance = crossing()
-    certificate = lower_bound(instance, steps=4500)
-    assert certificate.bound == 11
+    certificate = lower_bound(crossing(), steps=4500)
     assert certificate.deadlines
-    assert verify_bound(instance, certificate) == 11
+    assert verify_bound(crossing(), certificate) == certificate.bound == 11
 
 
 @pytest.mark.parametrize(("honest", "tamper", "path", "reason"), TAMPERED)
@@ -81,16 +76,14 @@ NO_WAY = "a robot of the group has no way to its goal"
 )
 def test_nothing_is_claimed_of_a_group_with_a_robot_without_a_way(claim: Mapping[str, object], reason: str) -> None:
     crossed = crossing()
-    instance = Instance(crossed.graph, (*crossed.robots, Robot("lost", "north", "island")))
+    with_lost = Instance(crossed.graph, (*crossed.robots, Robot("lost", "north", "island")))
     with pytest.raises(Refusal, match=reason):
-        verify_bound(instance, msgspec.structs.replace(lower_bound(instance, steps=2), **claim))
+        verify_bound(with_lost, msgspec.structs.replace(lower_bound(with_lost, steps=2), **claim))
 
 
 def test_a_robot_that_vanishes_may_have_passed_its_goal_when_it_is_seen() -> None:
-    lane = Instance(
-        ResourceGraph((Resource("a"), Resource("b"), Resource("c")), (("a", "b"), ("b", "c"))), (Robot("r", "a", "b"),)
-    )
-    deadlines = DeadlinesDocument(("r",), (0,), 1, "", ((2, ("c",)),))
+    lane = instance(line("abc"), ("a", "b"))
+    deadlines = DeadlinesDocument(("r0",), (0,), 1, "", ((2, ("c",)),))
     assert has_model(formula_of_deadlines(lane, deadlines, 100))
     earlier = msgspec.structs.replace(deadlines, seen=((1, ("c",)),))
     assert not has_model(formula_of_deadlines(lane, earlier, 100))
@@ -105,21 +98,19 @@ def test_who_is_seen_several_times_pays_for_each_tick_of_its_stay_in_whatever_or
     assert (fees.last, Fees([(5, 1)], sights).last) == (3, 5)
 
 
-def test_a_robot_pays_only_where_it_is_seen() -> None:
-    certificate = sight_certificate()
+@pytest.mark.parametrize("honest", [deadline_certificate, sight_certificate])
+def test_deadlines_are_counted_once_for_all_robots_but_one(honest: Callable[[], BoundDocument]) -> None:
+    """And a robot pays only where it keeps its deadline, or is seen."""
+    certificate = honest()
     assert [least for _, least in certificate.robots] == [3 << 16, 2 << 16, 3 << 16]
-    claimed = tuple((robot, 7 << 15) for robot, _ in certificate.robots)
-    with pytest.raises(Refusal, match="robot r0 can have no more than 196608"):
-        verify_bound(crossing(), msgspec.structs.replace(certificate, robots=claimed))
-
-
-def test_deadlines_are_counted_once_for_all_robots_but_one() -> None:
-    certificate = deadline_certificate()
-    assert [least for _, least in certificate.robots] == [3 << 16, 2 << 16, 3 << 16]
-    dearer = msgspec.structs.replace(certificate, bound=8)
-    with pytest.raises(Refusal, match="the bound must be 7") as refused:
-        verify_bound(crossing(), dearer)
-    assert refused.value.rule == "bound/total"
+    dearer = tuple((robot, 7 << 15) for robot, _ in certificate.robots)
+    for change, rule, reason in (
+        ({"bound": 8}, "bound/total", "the bound must be 7"),
+        ({"robots": dearer}, "bound/robots", "robot r0 can have no more than 196608"),
+    ):
+        with pytest.raises(Refusal, match=reason) as refused:
+            verify_bound(crossing(), msgspec.structs.replace(certificate, **change))
+        assert refused.value.rule == rule
 
 
 @pytest.mark.parametrize(("quarters", "number", "bound"), [(0, 1, 6), (1, 1, 7), (2, 1, 8), (4, 1, 9), (2, 2, 9)])

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
 from tests.verify.bound_examples import (
@@ -58,30 +58,20 @@ def asked(op: str, instance: Instance, solution: Solution, **more: object) -> Js
 
 @given(st.data(), fleets_under_way())
 def test_query_certificates_prove_the_least_arrival_and_no_later_one(data: st.DataObject, fleet: FleetUnderWay) -> None:
-    _, certificate = certified(fleet.instance, fleet.solution, fleet.robot, fleet.now)
-    verdict = verify_query(fleet.instance, fleet.solution, certificate)
-    assert (verdict["verdict"], verdict["bound"]) == ("accepted", certificate["bound"])
-    if certificate["bound"] is not None:
-        for later in (certificate["bound"] + 1, None):
-            assert verify_query(fleet.instance, fleet.solution, certificate | {"bound": later})["verdict"] == "refused"
-    if certificate["labels"]:
-        missing = data.draw(st.integers(0, len(certificate["labels"]) - 1))
-        fewer = [label for number, label in enumerate(certificate["labels"]) if number != missing]
-        assert verify_query(fleet.instance, fleet.solution, certificate | {"labels": fewer})["verdict"] == "refused"
-
-
-@given(st.data(), fleets_under_way())
-def test_query_certificates_of_robots_under_way_prove_the_least_arrival(
-    data: st.DataObject, fleet: FleetUnderWay
-) -> None:
-    assume(fleet.solution.plans)
-    plan = data.draw(st.sampled_from(fleet.solution.plans))
-    assume(not has_ended(plan, fleet.now))
-    _, certificate = certified(fleet.instance, fleet.solution, plan.robot, fleet.now)
-    verdict = verify_query(fleet.instance, fleet.solution, certificate)
-    assert (verdict["verdict"], verdict["bound"]) == ("accepted", certificate["bound"])
-    later = certificate | {"bound": certificate["bound"] + 1}
-    assert verify_query(fleet.instance, fleet.solution, later)["verdict"] == "refused"
+    """Of the robot to add, and of one under way."""
+    under_way = [plan.robot for plan in fleet.solution.plans if not has_ended(plan, fleet.now)]
+    for robot in (fleet.robot, *([data.draw(st.sampled_from(under_way))] if under_way else [])):
+        _, certificate = certified(fleet.instance, fleet.solution, robot, fleet.now)
+        verdict = verify_query(fleet.instance, fleet.solution, certificate)
+        assert (verdict["verdict"], verdict["bound"]) == ("accepted", certificate["bound"])
+        labels, wrong = certificate["labels"], []
+        if certificate["bound"] is not None:
+            wrong += [{"bound": certificate["bound"] + 1}, {"bound": None}]
+        if labels:
+            missing = data.draw(st.integers(0, len(labels) - 1))
+            wrong.append({"labels": labels[:missing] + labels[missing + 1 :]})
+        for change in wrong:
+            assert verify_query(fleet.instance, fleet.solution, certificate | change)["verdict"] == "refused"
 
 
 @given(instances())

@@ -1,7 +1,7 @@
 """Properties of rules that no other module tests as such: what breaks them at random is found, and nothing else."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any, TypeAlias
@@ -40,34 +40,30 @@ TOO_SMALL = st.integers(max_value=0) | st.sampled_from([True, 1.0, "1", None])
 NOWHERE = "no resource of the graph"
 
 
-def _resource(name: str, wrong: st.SearchStrategy[Any]) -> Plant:
-    def plant(instance: Instance, data: st.DataObject) -> Instance:
-        at = data.draw(st.integers(0, len(instance.graph.resources) - 1))
-        resources = list(instance.graph.resources)
-        resources[at] = replace(resources[at], **{name: data.draw(wrong)})
-        return replace(instance, graph=replace(instance.graph, resources=tuple(resources)))
+def _on_graph(instance: Instance, **changes: Any) -> Instance:  # noqa: ANN401 - nonsense too
+    return replace(instance, graph=replace(instance.graph, **changes))
 
-    return plant
+
+def _one_changed(each: Sequence[Any], name: str, wrong: st.SearchStrategy[Any], data: st.DataObject) -> tuple[Any, ...]:
+    at = data.draw(st.integers(0, len(each) - 1))
+    return (*each[:at], replace(each[at], **{name: data.draw(wrong)}), *each[at + 1 :])
+
+
+def _resource(name: str, wrong: st.SearchStrategy[Any]) -> Plant:
+    return lambda instance, data: _on_graph(
+        instance, resources=_one_changed(instance.graph.resources, name, wrong, data)
+    )
 
 
 def _robot(name: str, wrong: st.SearchStrategy[Any]) -> Plant:
-    def plant(instance: Instance, data: st.DataObject) -> Instance:
-        at = data.draw(st.integers(0, len(instance.robots) - 1))
-        robots = list(instance.robots)
-        robots[at] = replace(robots[at], **{name: data.draw(wrong)})
-        return replace(instance, robots=tuple(robots))
-
-    return plant
+    return lambda instance, data: replace(instance, robots=_one_changed(instance.robots, name, wrong, data))
 
 
 def _edge(instance: Instance, data: st.DataObject) -> Instance:
     graph = instance.graph
     some = data.draw(st.sampled_from([resource.id for resource in graph.resources]))
     wrong = [(some, some), (some, NOWHERE), (NOWHERE, some), *graph.edges[:1]]
-    return replace(
-        instance,
-        graph=replace(graph, edges=(*graph.edges, data.draw(st.sampled_from(wrong)))),
-    )
+    return _on_graph(instance, edges=(*graph.edges, data.draw(st.sampled_from(wrong))))
 
 
 def _group(instance: Instance, data: st.DataObject) -> Instance:
@@ -75,8 +71,7 @@ def _group(instance: Instance, data: st.DataObject) -> Instance:
     some = data.draw(st.sampled_from([resource.id for resource in graph.resources]))
     wrong = [Group("x", ()), Group("x", (some, NOWHERE)), Group("x", (some, some)), *graph.groups[:1]]
     zero = st.builds(Group, st.just("x"), st.just((some,)), TOO_SMALL)
-    groups = (*graph.groups, data.draw(st.sampled_from(wrong) | zero))
-    return replace(instance, graph=replace(graph, groups=groups))
+    return _on_graph(instance, groups=(*graph.groups, data.draw(st.sampled_from(wrong) | zero)))
 
 
 def _repeated_robot(instance: Instance, data: st.DataObject) -> Instance:
@@ -85,9 +80,8 @@ def _repeated_robot(instance: Instance, data: st.DataObject) -> Instance:
 
 
 def _repeated_resource(instance: Instance, data: st.DataObject) -> Instance:
-    graph = instance.graph
-    again = data.draw(st.sampled_from(graph.resources))
-    return replace(instance, graph=replace(graph, resources=(*graph.resources, again)))
+    resources = instance.graph.resources
+    return _on_graph(instance, resources=(*resources, data.draw(st.sampled_from(resources))))
 
 
 def _policy(name: str, *known: str) -> Plant:
