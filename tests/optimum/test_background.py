@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from multiprocessing import active_children
 
 import pytest
+from tests.optimum.test_branching import nothing
 
 from carp_optimum.background import BackgroundSearch, Look
 from carproof import Refusal, TimeOver
@@ -14,10 +15,6 @@ def own_process(request: pytest.FixtureRequest) -> Iterator[bool]:
     """Whether the search has a process of its own; none is left in the end."""
     yield request.param
     assert active_children() == []
-
-
-def never() -> None:
-    """Let the one who waits wait."""
 
 
 def doubling(look: Look) -> Iterator[tuple[int, int]]:
@@ -47,16 +44,16 @@ def over() -> None:
 
 
 def test_the_answer_is_the_result_of_the_work_that_is_asked_for(own_process: bool) -> None:
-    beside = BackgroundSearch(doubling, never, own_process=own_process)
+    beside = BackgroundSearch(doubling, nothing, own_process=own_process)
     assert [beside.result(work) for work in (9, 10, 29, 30, 49, 1000)] == [None, 2, 4, 8, 16, 32]
     beside.close()
 
 
 def test_a_refusal_ends_the_search_and_a_fault_is_raised_where_its_results_are_read(own_process: bool) -> None:
-    beside = BackgroundSearch(refused, never, own_process=own_process)
+    beside = BackgroundSearch(refused, nothing, own_process=own_process)
     assert beside.result(5) == "first"
     beside.close()
-    beside = BackgroundSearch(faulty, never, own_process=own_process)
+    beside = BackgroundSearch(faulty, nothing, own_process=own_process)
     with pytest.raises(ValueError, match="a fault"):
         beside.result(5)
     beside.close()
@@ -70,7 +67,7 @@ def test_one_who_waits_looks_at_the_clock(own_process: bool) -> None:
 
 
 def test_results_after_the_work_asked_for_are_kept_for_later(own_process: bool) -> None:
-    beside = BackgroundSearch(doubling, never, own_process=own_process)
+    beside = BackgroundSearch(doubling, nothing, own_process=own_process)
     assert beside.result(10) == 2
     assert beside.latest() in {4, 8, 16, 32}
     assert beside.result(1000) == 32

@@ -4,6 +4,7 @@ from itertools import islice
 
 import pytest
 from hypothesis import assume, given, settings
+from tests.optimum.test_branching import nothing
 from tests.profiles import draws
 from tests.verify.tiny import TINY
 
@@ -21,14 +22,10 @@ TRIES = 30
 SECONDS = 60
 
 
-def never() -> None:
-    """Let the search run as long as it likes."""
-
-
 def totals(instance: Instance, plans: tuple[Plan, ...]) -> list[int]:
     """The total after each try, of plans that break no rule."""
     found = []
-    for _, each in islice(improved(instance, plans, never), TRIES):
+    for _, each in islice(improved(instance, plans, nothing), TRIES):
         verdict = judge(instance, Solution(tuple(each), tuple(plan.robot for plan in each)))
         assert (verdict.violations, verdict.unplanned) == ((), 0)
         assert verdict.cost is not None

@@ -2,6 +2,7 @@
 
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
+from tests.optimum.test_branching import nothing
 from tests.profiles import draws
 from tests.verify.test_optimum import turned_ring
 
@@ -14,10 +15,6 @@ from carproof.testing.strategies import Sizes, instances
 SMALL = Sizes(resources=6, robots=4, capacity=2, duration=3, release=3, pace=2)
 
 
-def never() -> None:
-    """Let the search run as long as it likes."""
-
-
 @pytest.fixture(params=[False, True], ids=["read", "run"])
 def _engine(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Plan with the reference, or with compiled code even where its first call has to compile."""
@@ -28,7 +25,7 @@ def _engine(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> 
 @settings(max_examples=draws(100), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(instances(SMALL))
 def test_the_plans_are_sound_and_of_all_robots(instance: Instance) -> None:
-    plans = plans_of_all(instance, [*instance.robot], never)
+    plans = plans_of_all(instance, [*instance.robot], nothing)
     if plans is not None:
         verdict = judge(instance, Solution(tuple(plans), tuple(each.robot for each in plans)))
         assert (verdict.violations, verdict.unplanned) == ((), 0)
@@ -40,7 +37,7 @@ def test_the_plans_are_sound_and_of_all_robots(instance: Instance) -> None:
 def test_a_robot_that_found_no_plan_is_planned_earlier(instance: Instance) -> None:
     backwards = Instance(instance.graph, instance.robots[::-1], instance.after_goal)
     assume(len(instance.robots) == 2 and any(not plan(each, Carp()).unplanned for each in (instance, backwards)))
-    assert plans_of_all(instance, [*instance.robot], never) is not None
+    assert plans_of_all(instance, [*instance.robot], nothing) is not None
 
 
 @pytest.mark.usefixtures("_engine")
@@ -63,4 +60,4 @@ def test_numbers_that_the_arrays_do_not_hold_are_planned_by_the_reference() -> N
     )
     for release in (2**31, 0):
         instance = Instance(graph, (Robot("r", "a", "c", release), Robot("s", "b", "c")))
-        assert plans_of_all(instance, [*instance.robot], never) is not None
+        assert plans_of_all(instance, [*instance.robot], nothing) is not None
