@@ -5,7 +5,6 @@ from dataclasses import replace
 from itertools import combinations_with_replacement, pairwise
 from time import process_time
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.spec.making import SOLVED, VANISHING, plan_of, solution_of
@@ -218,31 +217,13 @@ def test_a_plan_without_visits_has_no_start_and_no_goal_and_nowhere_has_no_moves
 
 
 def test_a_verdict_sums_the_costs_and_counts_the_unplanned() -> None:
-    verdict = judge(VANISHING, solution_of(SOLVED[:2], unplanned=("r3",)))
-    assert (verdict.valid, verdict.cost, verdict.unplanned) == (True, 5 + 3, 1)
-
-
-def test_a_plan_without_visits_adds_no_cost_and_counts_as_a_plan() -> None:
-    verdict = judge(VANISHING, solution_of((*SOLVED[:2], plan_of("r3"))))
-    assert (verdict.valid, verdict.cost, verdict.unplanned) == (False, 8, 0)
-
-
-@pytest.mark.parametrize(
-    ("solution", "expected"),
-    [
-        (Solution(SOLVED, ("r1", "r2")), ["solution/order"]),
-        (Solution(SOLVED, ("r1", "r2", "r3", "r3")), ["solution/order"]),
-        (Solution(SOLVED, ("r1", "r2", "r3", "r9")), ["solution/order"]),
-        (Solution(SOLVED, ("r1", "r2", "r3"), ("r3",)), ["solution/covers"]),
-        (Solution(SOLVED, ("r1", "r2", "r3"), ("r9",)), ["solution/covers"]),
-        (Solution((*SOLVED, SOLVED[2]), ("r1", "r2", "r3")), ["solution/covers"]),
-        (Solution(SOLVED[:2], ("r1", "r2", "r3"), ("r3",)), ["solution/order"]),
-        (Solution(SOLVED[:2], ("r1", "r2")), ["solution/covers"]),
-        (Solution(SOLVED[:2], ("r1", "r2"), ("r3", "r3")), ["solution/covers"]),
-    ],
-)
-def test_each_violation_planted_in_the_rest_of_a_solution_is_found(solution: Solution, expected: list[str]) -> None:
-    assert [each.rule for each in judge(VANISHING, solution).violations] == expected
+    """A plan without visits adds no cost, and counts as a plan."""
+    for solution, expected in (
+        (solution_of(SOLVED[:2], unplanned=("r3",)), (True, 5 + 3, 1)),
+        (solution_of((*SOLVED[:2], plan_of("r3"))), (False, 5 + 3, 0)),
+    ):
+        verdict = judge(VANISHING, solution)
+        assert (verdict.valid, verdict.cost, verdict.unplanned) == expected
 
 
 def test_an_update_is_checked_robot_by_robot() -> None:

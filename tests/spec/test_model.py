@@ -11,7 +11,7 @@ from hypothesis import given
 from tests.spec.making import VANISHING
 from tests.spec.strategies import FEWER, SIZES
 
-from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Solution
+from carp_spec import Instance, Plan, Resource, ResourceGraph, Solution
 from carproof.testing.strategies import resource_graphs
 
 
@@ -34,13 +34,6 @@ def test_edges_to_unknown_resources_are_no_moves() -> None:
     graph = ResourceGraph((Resource("a"), Resource("b")), (("a", "x"), ("x", "b"), ("a", "b")))
     assert graph.successors == {"a": ("b",), "b": ("a",)}
     assert not {("x", "b"), ("a", "x")} & graph.moves
-
-
-def test_a_robot_needs_its_pace_times_the_duration() -> None:
-    graph = ResourceGraph((Resource("a"), Resource("b", duration=3)), ())
-    instance = Instance(graph, (Robot("quick", "a", "b"), Robot("slow", "a", "b", pace=2)))
-    assert [instance.duration(robot, "b") for robot in ("quick", "slow")] == [3, 6]
-    assert [instance.duration(robot, "a") for robot in ("quick", "slow")] == [1, 2]
 
 
 def test_look_ups_are_no_part_of_equality() -> None:

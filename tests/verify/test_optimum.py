@@ -7,7 +7,6 @@ from tests.spec.making import grid, row
 
 from carp_optimum.optimum import optimum
 from carp_spec import AfterGoal, Instance, Refusal, Resource, ResourceGraph, Robot, judge
-from carp_verify.optimum.encoding import Encoding
 from carp_verify.optimum.unsolvable import describe
 from carproof.generate import Fleet, Grid, grid_instance
 
@@ -91,15 +90,6 @@ def test_an_undecided_search_leaves_the_best_plans_found_and_a_bound(
     verdict = judge(instance, best.solution)
     assert (verdict.violations, verdict.unplanned, verdict.cost) == ((), 0, best.cost)
     assert best.cost > best.lower > (best.shortest or 0)
-
-
-@pytest.mark.parametrize("most", [20, 200], ids=["at once", "while it grows"])
-def test_a_formula_too_large_is_refused_with_the_limit_named(most: int) -> None:
-    instance = on_grid(6, Robot("a", "0,0", "5,5"), Robot("b", "5,5", "0,0"))
-    encoding = Encoding(instance, most=most)
-    with pytest.raises(Refusal, match=f"clauses of the formula must be at most {most}, the limit"):
-        encoding.grow_to([1, 1])
-    assert len(encoding.formula.clauses) == (0 if most == 20 else most + 1)
 
 
 @pytest.mark.parametrize("limit", [0, 1])

@@ -40,14 +40,6 @@ def test_what_is_trusted_imports_no_search(name: str) -> None:
     assert not any(package in source(name) for package in ("carp_optimum", "carp_optimized", "carp_reference", "pysat"))
 
 
-def test_comments_of_coq_and_ocaml_are_no_lines_of_code(tmp_path: Path) -> None:
-    path = tmp_path / "Page.v"
-    path.write_text(
-        "(** A page (* of *)\n    x *)\nDefinition one := 1.\n\nLemma two : 1 = 1.\nProof. auto. Qed. (* x *)\n"
-    )
-    assert kernel_lines(path) == ["Definition one := 1.", "Lemma two : 1 = 1.", "Proof. auto. Qed. "]
-
-
 def test_the_map_of_the_kernel_counts_the_lines_that_must_be_trusted() -> None:
     text = (KERNEL / "README.md").read_text()
     counts = re.findall(r"\[(\w+\.\w+)\]\(\1\) (\d+) \|", text)
