@@ -41,7 +41,6 @@ if TYPE_CHECKING:
     from carproof.conform.reporting.saving import Origin
     from carproof.conform.run import Report
 
-_STAGES = "passed", "gave up", "skipped", "not asked", "wrong answer", "crash", "timeout", "protocol error"
 _SEED_BITS = 32
 _OUTPUTS = ("seed", "junit", "html", "as_json")
 """Options that a command line that asks again leaves out, or has anyway."""
@@ -293,11 +292,11 @@ def _origin(program: Sequence[str], level: str, one_shot: bool, executor: bool, 
 
 def _show(report: "Report", saved: Sequence[Path]) -> None:
     """Print the results: counts, findings, and the verdict."""
-    from carproof.conform.reporting.documents import counts  # noqa: PLC0415
+    from carproof.conform.reporting.documents import RESULTS, counts  # noqa: PLC0415
     from carproof.conform.reporting.wording import details, verdict  # noqa: PLC0415
 
-    rows = [(stage, *(count[name] for name in _STAGES)) for stage, count in counts(report).items()]
-    print_table(["cases", *_STAGES], rows, numbers=_STAGES)
+    rows = [(stage, *(count[name] for name in RESULTS)) for stage, count in counts(report).items()]
+    print_table(["cases", *RESULTS], rows, numbers=RESULTS)
     click.echo()
     for fault in report.faults:
         print_line(f"{fault.category}: {fault.message} [{fault.rule}]")

@@ -9,12 +9,15 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 import msgspec
 
+from carproof.command_line.tables import printable
 from carproof.conform.findings import Finding
 from carproof.conform.judging.deciding import Tally
 from carproof.conform.reporting.advice import advice_for
 from carproof.conform.run import Report, label
 
 FORMAT = "carproof-conformance/1"
+RESULTS = ("passed", "gave up", "skipped", "not asked", "wrong answer", "crash", "timeout", "protocol error")
+"""What a case can come to, in the order in which they are counted."""
 
 
 def counts(report: Report) -> dict[str, Counter[str]]:
@@ -73,7 +76,7 @@ def junit_document(report: Report, saved: Sequence[Path]) -> bytes:
         test = _test(suite, outcome.case.stage, outcome.case.name, outcome.finding, folders.get(id(outcome)))
         test.set("time", f"{outcome.seconds:.3f}")
         if not outcome.is_judged:
-            SubElement(test, "skipped", message=_printable(outcome.skipped or ""))
+            SubElement(test, "skipped", message=printable(outcome.skipped or ""))
     for stage, count in (("random", report.random), ("large", report.large)):
         if count:
             name = f"{count.total()} cases, seed {report.options.seed}"
@@ -84,7 +87,7 @@ def junit_document(report: Report, saved: Sequence[Path]) -> bytes:
     if not report.reaches_level:
         test = _test(suite, "level", report.options.level.label, None)
         message = "; ".join(report.shortfalls) or "no random case decided it"
-        SubElement(test, "failure", message=_printable(message))
+        SubElement(test, "failure", message=printable(message))
     tests = suite.findall("testcase")
     suite.set("tests", str(len(tests)))
     suite.set("failures", str(len(suite.findall("testcase/failure"))))
@@ -96,17 +99,10 @@ def junit_document(report: Report, saved: Sequence[Path]) -> bytes:
 
 
 def _test(suite: Element, stage: str, name: str, finding: Finding | None, folder: Path | None = None) -> Element:
-    test = SubElement(suite, "testcase", classname=f"carproof.{stage}", name=_printable(name))
+    test = SubElement(suite, "testcase", classname=f"carproof.{stage}", name=printable(name))
     if finding is not None:
         message = f"{finding.category}: {finding.message} [{finding.rule}]"
-        failure = SubElement(test, "failure", type=finding.rule, message=_printable(message))
+        failure = SubElement(test, "failure", type=finding.rule, message=printable(message))
         lines = [f"Advice: {advice_for(finding.rule)}", *([] if folder is None else [f"Saved in {folder}"])]
-        failure.text = "".join(
-            c if c in "\n\t" else _printable(c) for c in "\n".join([*lines, finding.stderr]).rstrip()
-        )
+        failure.text = "".join(c if c in "\n\t" else printable(c) for c in "\n".join([*lines, finding.stderr]).rstrip())
     return test
-
-
-def _printable(text: str) -> str:
-    """The text without the characters that XML cannot hold."""
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)

@@ -13,7 +13,7 @@ from carproof.command_line.tables import counted
 from carproof.conform.findings import Finding
 from carproof.conform.judging.outcome import Outcome
 from carproof.conform.reporting.advice import advice_for
-from carproof.conform.reporting.documents import counts
+from carproof.conform.reporting.documents import RESULTS, counts
 from carproof.conform.reporting.drawing import map_drawing
 from carproof.conform.reporting.saving import Origin, about_case, filled, judged_solution
 from carproof.conform.reporting.wording import verdict
@@ -22,7 +22,6 @@ from carproof.rules import ALL_RULES
 from carproof.viewer.colours import variables
 from carproof.viewer.page import view
 
-COLUMNS = "passed", "gave up", "skipped", "not asked", "wrong answer", "crash", "timeout", "protocol error"
 POLICY = "base-uri 'none'; form-action 'none'; connect-src 'none'; object-src 'none'; font-src 'none'; img-src data:"
 """The pages in the frames inherit it, and allow their own script and style alone by one of their own."""
 
@@ -49,9 +48,9 @@ def html_document(report: Report, saved: Sequence[Path], origin: Origin) -> byte
 
 def _table(report: Report) -> str:
     """How many cases of each stage came to what."""
-    head = "".join(f"<th>{name}</th>" for name in ("cases", *COLUMNS))
+    head = "".join(f"<th>{name}</th>" for name in ("cases", *RESULTS))
     rows = "".join(
-        f"<tr><th>{stage}</th>{''.join(f'<td>{count[name]}</td>' for name in COLUMNS)}</tr>"
+        f"<tr><th>{stage}</th>{''.join(f'<td>{count[name]}</td>' for name in RESULTS)}</tr>"
         for stage, count in counts(report).items()
     )
     return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"

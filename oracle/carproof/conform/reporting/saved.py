@@ -1,7 +1,7 @@
 """The folder of a program's findings: written in place of those of an earlier run, and read again by the next one."""
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -55,13 +55,13 @@ def own_folder(base: Path, program: str, judged: str) -> Path:
     """
     name = "".join(c if c.isalnum() or c in "._-" else "-" for c in program).strip(".-")[:MOST_LETTERS] or "program"
     folders = (base / (name if number == 1 else f"{name}-{number}") for number in count(1))
-    return next(folder for folder in folders if _judged(folder) in (None, judged))
+    return next(folder for folder in folders if (run := _run(folder)) is None or run.judged == judged)
 
 
-def _judged(folder: Path) -> str | None:
-    """Whose findings a folder holds; `None` if it holds none that can be read."""
+def _run(folder: Path) -> SavedRun | None:
+    """The run whose findings a folder holds; `None` if it holds none that can be read."""
     try:
-        return msgspec.json.decode(plain_file(folder / RUN, LARGEST), type=SavedRun).judged
+        return msgspec.json.decode(plain_file(folder / RUN, LARGEST), type=SavedRun)
     except (OSError, ValueError):
         return None
 
@@ -98,7 +98,8 @@ def save_all(
 
     They take the place of earlier findings, but for those whose folders are `kept`.
     """
-    cases = {name: case for name, case in _cases(folder).items() if name in kept}
+    before = _run(folder)
+    cases = {} if before is None else {name: case for name, case in before.cases.items() if name in kept}
     clear(folder, kept)
     names: list[str] = []
     for number, outcome in enumerate(failures, start=1):
@@ -116,14 +117,6 @@ def _names(number: int, outcome: Outcome) -> Iterator[str]:
     if number == 1:
         yield "."
     yield from (f"{other}-{outcome.fault.rule.replace('/', '-')}" for other in count(max(number, 2)))
-
-
-def _cases(folder: Path) -> Mapping[str, str]:
-    """The names of the saved cases by their folders; none if they cannot be read."""
-    try:
-        return msgspec.json.decode(plain_file(folder / RUN, LARGEST), type=SavedRun).cases
-    except (OSError, ValueError):
-        return {}
 
 
 def clear(folder: Path, kept: AbstractSet[str] = frozenset()) -> None:
