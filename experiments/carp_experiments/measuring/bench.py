@@ -17,7 +17,7 @@ from carp_spec import Instance, Neighbourhood
 from carp_spec.documents.decoding import write
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document
-from carproof.command_line.options import examples, json_option
+from carproof.command_line.options import json_option, listed
 from carproof.command_line.tables import print_table
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.progress import progress
@@ -78,9 +78,10 @@ class OnGrid:
     asked: int
 
 
-@click.command(
-    short_help="Measure queries, passes of CARP and additions.",
-    epilog=examples("carproof dev bench", "carproof dev bench --assignments 5 --json > bench.json"),
+@listed(
+    "Measure queries, passes of CARP and additions.",
+    "carproof dev bench",
+    "carproof dev bench --assignments 5 --json > bench.json",
 )
 @click.option("--assignments", type=click.IntRange(min=1), default=20, help="The number of random assignments per map.")
 @click.option("--growth/--no-growth", default=True, help="Measure larger and larger grids too.")

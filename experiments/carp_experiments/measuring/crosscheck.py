@@ -15,7 +15,7 @@ from carp_spec.documents.instances import instance_document
 from carp_spec.documents.solutions import solution_document
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, hypothesis_elsewhere, print_document
-from carproof.command_line.options import examples, output_options
+from carproof.command_line.options import listed, output_options
 from carproof.command_line.tables import print_line
 from carproof.extras import require
 from carproof.progress import progress
@@ -37,9 +37,10 @@ class Difference:
     optimized: Solution
 
 
-@click.command(
-    short_help="Ask both engines the same random questions.",
-    epilog=examples("carproof dev crosscheck --examples 10000", "carproof dev crosscheck --seed 7 -o difference.json"),
+@listed(
+    "Ask both engines the same random questions.",
+    "carproof dev crosscheck --examples 10000",
+    "carproof dev crosscheck --seed 7 -o difference.json",
 )
 @click.option("--examples", "count", type=click.IntRange(min=1), default=1000, help="The number of random questions.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, help="The seed of the questions.")

@@ -68,6 +68,11 @@ def examples(*lines: str) -> str:
     return "\n".join(["\b", "Examples:", *(f"  {line}" for line in lines)])
 
 
+def listed(summary: str, *lines: str) -> Callable[[Callable[..., Any]], click.Command]:
+    """The decorator of a command, which has a line in the list of commands, and examples at the end of its help."""
+    return click.command(short_help=summary, epilog=examples(*lines))
+
+
 instance_argument = click.argument("instance", type=InputFile())
 solution_argument = click.argument("solution", type=InputFile())
 trace_argument = click.argument("trace", type=InputFile())

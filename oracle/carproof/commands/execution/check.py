@@ -1,20 +1,15 @@
 """`carproof execution check`: whether what has happened follows a solution."""
 
-import click
-
 from carp_spec.documents.solutions import read_trace
 from carp_spec.documents.verdicts import write_verdict
 from carproof.api.judging import check_trace
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document, read_file, read_sound
-from carproof.command_line.options import examples, instance_argument, json_option, solution_argument, trace_argument
+from carproof.command_line.options import instance_argument, json_option, listed, solution_argument, trace_argument
 from carproof.command_line.tables import print_line
 
 
-@click.command(
-    short_help="Check what robots have done against their plans.",
-    epilog=examples("carproof execution check town.json plans.json trace.json"),
-)
+@listed("Check what robots have done against their plans.", "carproof execution check town.json plans.json trace.json")
 @instance_argument
 @solution_argument
 @trace_argument

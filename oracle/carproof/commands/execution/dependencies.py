@@ -8,21 +8,19 @@ from carp_reference.execution import order_of
 from carp_spec.documents.decoding import write
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, OutputFile, naming, read_sound, shown, write_whole
-from carproof.command_line.options import examples, instance_argument, output_options, solution_argument
+from carproof.command_line.options import instance_argument, listed, output_options, solution_argument
 from carproof.command_line.tables import print_line, print_table
 from carproof.execution.delays import late_robots
 from carproof.execution.simulation import DependenciesDocument, delay_named, dependencies_document, dot
 from carproof.viewer.dependency_picture import dependency_still
 
 
-@click.command(
-    short_help="Show which visits wait, and what delays do.",
-    epilog=examples(
-        "carproof execution dependencies town.json plans.json",
-        "carproof execution dependencies town.json plans.json --delay r7:3:5",
-        "carproof execution dependencies town.json plans.json --dot graph.dot",
-        "carproof execution dependencies town.json plans.json --svg graph.svg",
-    ),
+@listed(
+    "Show which visits wait, and what delays do.",
+    "carproof execution dependencies town.json plans.json",
+    "carproof execution dependencies town.json plans.json --delay r7:3:5",
+    "carproof execution dependencies town.json plans.json --dot graph.dot",
+    "carproof execution dependencies town.json plans.json --svg graph.svg",
 )
 @instance_argument
 @solution_argument

@@ -7,18 +7,16 @@ from carp_spec import Refusal, ResourceId, Visit
 from carp_spec.documents.solutions import write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, Output, naming, read_bytes
-from carproof.command_line.options import Asked, asks_for_a_robot, examples, gives_plans
+from carproof.command_line.options import Asked, asks_for_a_robot, gives_plans, listed
 from carproof.command_line.tables import print_line, print_table, remark
 from carproof.engines import engine_named
 from carproof.execution.giving_way import give_way
 
 
-@click.command(
-    short_help="Let one robot go first, and plan the others around it.",
-    epilog=examples(
-        "carproof execution give-way town.json plans.json person --now 12 -o after.json",
-        "carproof execution give-way town.json plans.json person --now 12 --route route.json",
-    ),
+@listed(
+    "Let one robot go first, and plan the others around it.",
+    "carproof execution give-way town.json plans.json person --now 12 -o after.json",
+    "carproof execution give-way town.json plans.json person --now 12 --route route.json",
 )
 @asks_for_a_robot
 @click.option("--route", type=InputFile(), help="A list of visits [resource, enter, leave] that ROBOT keeps to.")

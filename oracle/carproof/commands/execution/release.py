@@ -8,7 +8,7 @@ from carproof.api.executing import check_grants
 from carproof.api.executing import release as released_of
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, Output, naming, read_file, read_sound
-from carproof.command_line.options import examples, instance_argument, output_options, solution_argument, trace_argument
+from carproof.command_line.options import instance_argument, listed, output_options, solution_argument, trace_argument
 from carproof.command_line.tables import counted, print_line, print_table
 from carproof.command_line.time_left import time_left
 from carproof.execution.release_documents import (
@@ -25,14 +25,12 @@ MOST_SHOWN = 8
 ANSWERS = {"safe": Answer.YES, "unsafe": Answer.NO, "undecided": Answer.UNDECIDED}
 
 
-@click.command(
-    short_help="Tell which resources robots may be granted next.",
-    epilog=examples(
-        "carproof release town.json plans.json trace.json",
-        "carproof release town.json plans.json trace.json --beyond",
-        "carproof release town.json plans.json trace.json --grants wanted.json",
-        "carproof release town.json plans.json trace.json --beyond --seconds 10",
-    ),
+@listed(
+    "Tell which resources robots may be granted next.",
+    "carproof release town.json plans.json trace.json",
+    "carproof release town.json plans.json trace.json --beyond",
+    "carproof release town.json plans.json trace.json --grants wanted.json",
+    "carproof release town.json plans.json trace.json --beyond --seconds 10",
 )
 @instance_argument
 @solution_argument

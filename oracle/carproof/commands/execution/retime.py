@@ -1,22 +1,18 @@
 """`carproof execution retime`: plans for the rest of the way, after delays."""
 
-import click
-
 from carp_spec import total_cost
 from carp_spec.documents.solutions import read_trace, write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, naming, read_file, read_sound
-from carproof.command_line.options import examples, gives_plans, instance_argument, solution_argument, trace_argument
+from carproof.command_line.options import gives_plans, instance_argument, listed, solution_argument, trace_argument
 from carproof.command_line.tables import counted, print_line
 from carproof.engines import engine_named
 
 
-@click.command(
-    short_help="Make plans for the rest, in the same order, after delays.",
-    epilog=examples(
-        "carproof execution retime town.json plans.json trace.json -o late.json",
-        "carproof query town.json late.json r7 --now 13",
-    ),
+@listed(
+    "Make plans for the rest, in the same order, after delays.",
+    "carproof execution retime town.json plans.json trace.json -o late.json",
+    "carproof query town.json late.json r7 --now 13",
 )
 @instance_argument
 @solution_argument

@@ -11,7 +11,7 @@ from carp_spec.documents.solutions import write_solution, write_trace
 from carp_spec.requests import require_tick
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import OutputFile, print_document, read_file, read_sound, write_whole
-from carproof.command_line.options import examples, instance_argument, json_option, solution_argument
+from carproof.command_line.options import instance_argument, json_option, listed, solution_argument
 from carproof.command_line.tables import print_line, print_table
 from carproof.execution.delays import Delay, until
 from carproof.execution.simulation import (
@@ -28,13 +28,11 @@ COLUMNS = ("driver", "robots", "delays", "arrived", "late", "mean", "worst", "co
 MOST_SHOWN = 3
 
 
-@click.command(
-    short_help="Simulate robots that are delayed.",
-    epilog=examples(
-        "carproof execution simulate town.json plans.json --delays 0.05:3",
-        "carproof execution simulate town.json plans.json --driver order --trace t.json --now 9",
-        "carproof execution simulate town.json plans.json --driver clock --delays delays.json",
-    ),
+@listed(
+    "Simulate robots that are delayed.",
+    "carproof execution simulate town.json plans.json --delays 0.05:3",
+    "carproof execution simulate town.json plans.json --driver order --trace t.json --now 9",
+    "carproof execution simulate town.json plans.json --driver clock --delays delays.json",
 )
 @instance_argument
 @solution_argument

@@ -8,7 +8,7 @@ from carp_spec import total_cost
 from carp_spec.documents.solutions import write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, read_sound
-from carproof.command_line.options import examples, gives_plans, instance_argument, solution_argument
+from carproof.command_line.options import gives_plans, instance_argument, listed, solution_argument
 from carproof.command_line.tables import print_table, remark
 from carproof.command_line.time_left import time_left
 from carproof.engines import engine_named
@@ -16,10 +16,7 @@ from carproof.execution.untangling import untangle
 from carproof.requests import deadline
 
 
-@click.command(
-    short_help="Remove rotations from plans.",
-    epilog=examples("carproof execution untangle town.json plans.json -o in-order.json"),
-)
+@listed("Remove rotations from plans.", "carproof execution untangle town.json plans.json -o in-order.json")
 @instance_argument
 @solution_argument
 @click.option("--seconds", type=float, help="The time of the whole command.")

@@ -9,7 +9,7 @@ from carp_spec.requests import sound_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import naming, print_document
 from carproof.command_line.foreign import Problem, solution_files
-from carproof.command_line.options import engine_option, examples, json_option, kernel_option
+from carproof.command_line.options import engine_option, json_option, kernel_option, listed
 from carproof.command_line.output import shown_plan
 from carproof.command_line.tables import print_line, print_table
 from carproof.command_line.time_left import time_left
@@ -23,14 +23,12 @@ COLUMNS = ("robots", "certified", "late", "undecided", "unplanned", "decided by"
 OWN_FORMAT = "carproof"
 
 
-@click.command(
-    short_help="Check that no robot can arrive earlier.",
-    epilog=examples(
-        "carproof audit town.json plans.json",
-        "carproof audit town.json plans.json --kernel",
-        "carproof audit town.json plans.json --seconds 10",
-        "carproof audit --map town.map --scen town.scen --agents 40 result.txt",
-    ),
+@listed(
+    "Check that no robot can arrive earlier.",
+    "carproof audit town.json plans.json",
+    "carproof audit town.json plans.json --kernel",
+    "carproof audit town.json plans.json --seconds 10",
+    "carproof audit --map town.map --scen town.scen --agents 40 result.txt",
 )
 @solution_files
 @click.option("--find-order", is_flag=True, help="Look for an order in which no plan is late, whatever SOLUTION says.")

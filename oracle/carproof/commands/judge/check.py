@@ -18,7 +18,7 @@ from carproof.api.judging import check
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, naming, print_document
 from carproof.command_line.foreign import Problem, solution_files
-from carproof.command_line.options import examples, kernel_option, output_options, read_by
+from carproof.command_line.options import kernel_option, listed, output_options, read_by
 from carproof.command_line.output import show_violations
 from carproof.command_line.tables import counted, print_line, remark
 from carproof.layouts.settings import footprint as footprint_of
@@ -26,20 +26,18 @@ from carproof.layouts.settings import step_of_cells
 from carproof.progress import progress
 
 
-@click.command(
-    short_help="Check plans, and name the rules that they break.",
-    epilog=examples(
-        "carproof check town.json plans.json",
-        "carproof plan town.json --json | carproof check town.json -",
-        "carproof check town.json plans.json --json > verdict.json",
-        "carproof check town.json plans.json --require-all",
-        "carproof check town.json result.txt --from lacam",
-        "carproof check plant.json plans.json --footprint 900x600mm",
-        "carproof check grid.json plans.json --footprint 450mm --cells 1m",
-        "carproof check town.json plans.json --kernel",
-        "carproof check town.json plans.json --z3",
-        "carproof check --map town.map --scen town.scen --agents 40 result.txt",
-    ),
+@listed(
+    "Check plans, and name the rules that they break.",
+    "carproof check town.json plans.json",
+    "carproof plan town.json --json | carproof check town.json -",
+    "carproof check town.json plans.json --json > verdict.json",
+    "carproof check town.json plans.json --require-all",
+    "carproof check town.json result.txt --from lacam",
+    "carproof check plant.json plans.json --footprint 900x600mm",
+    "carproof check grid.json plans.json --footprint 450mm --cells 1m",
+    "carproof check town.json plans.json --kernel",
+    "carproof check town.json plans.json --z3",
+    "carproof check --map town.map --scen town.scen --agents 40 result.txt",
 )
 @solution_files
 @kernel_option

@@ -13,7 +13,7 @@ from carp_spec.documents.verdicts import ViolationDocument
 from carp_spec.execution.logs import judge_log
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, naming, print_document, read_bytes, read_instance_file, shown
-from carproof.command_line.options import examples, json_option
+from carproof.command_line.options import json_option, listed
 from carproof.command_line.output import show_violations
 from carproof.command_line.tables import print_line, print_table, say
 from carproof.formats.logs import LOGS, read_log, read_log_on_map
@@ -22,14 +22,12 @@ from carproof.formats.movingai import read_map
 FORMATS = "; ".join(f"{name}: {about}" for name, about in LOGS.items())
 
 
-@click.command(
-    short_help="Check what robots did, without plans.",
-    epilog=examples(
-        "carproof check-log town.json log.json",
-        "carproof check-log town.json log.csv --from csv",
-        "carproof check-log --map random-32-32-20.map output.json --from league",
-        "carproof check-log --map sorting.map paths.txt --from rhcr --served",
-    ),
+@listed(
+    "Check what robots did, without plans.",
+    "carproof check-log town.json log.json",
+    "carproof check-log town.json log.csv --from csv",
+    "carproof check-log --map random-32-32-20.map output.json --from league",
+    "carproof check-log --map sorting.map paths.txt --from rhcr --served",
 )
 @click.argument("files", metavar="[INSTANCE] LOG", nargs=-1, required=True, type=InputFile())
 @click.option("--from", "format", type=click.Choice([*LOGS]), default="trace", help=f"The format of LOG. {FORMATS}.")

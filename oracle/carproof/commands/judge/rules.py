@@ -7,16 +7,13 @@ import click
 
 from carp_spec import Rule
 from carproof.command_line.answer import Answer
-from carproof.command_line.options import examples
+from carproof.command_line.options import listed
 from carproof.command_line.tables import print_table
 from carproof.input_rules import Code
 from carproof.rules import ALL_RULES
 
 
-@click.command(
-    short_help="List all rules, or explain one.",
-    epilog=examples("carproof rules", "carproof rules joint/capacity"),
-)
+@listed("List all rules, or explain one.", "carproof rules", "carproof rules joint/capacity")
 @click.argument("id", required=False)
 def command(id: str | None) -> Answer:
     """List all rules, or print the rule ID in full."""

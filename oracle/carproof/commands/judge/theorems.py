@@ -10,7 +10,7 @@ import click
 
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document
-from carproof.command_line.options import examples, json_option
+from carproof.command_line.options import json_option, listed
 from carproof.command_line.tables import print_line, print_table
 from carproof.progress import progress
 
@@ -23,14 +23,12 @@ RESULTS = {True: "checked", False: "FAILED"}
 PROVED = ("theorem, proved in Coq", "file", "rules")
 
 
-@click.command(
-    short_help="List the theorems of the rules, and have z3 check lemmas.",
-    epilog=examples(
-        "carproof theorems",
-        "carproof theorems earliest_entry_dominates",
-        "carproof theorems freed_stays_come_too_late",
-        "carproof theorems --json > theorems.json",
-    ),
+@listed(
+    "List the theorems of the rules, and have z3 check lemmas.",
+    "carproof theorems",
+    "carproof theorems earliest_entry_dominates",
+    "carproof theorems freed_stays_come_too_late",
+    "carproof theorems --json > theorems.json",
 )
 @click.argument("name", required=False)
 @json_option

@@ -19,7 +19,7 @@ from carproof.command_line.files import (
     read_instance_file,
     read_solution_file,
 )
-from carproof.command_line.options import examples, json_option, kernel_option
+from carproof.command_line.options import json_option, kernel_option, listed
 from carproof.command_line.tables import print_line, print_table
 from carproof.extras import require
 from carproof.judging.verdicts import verify_bound, verify_proof, verify_query
@@ -32,14 +32,12 @@ MOST_FILES = 3
 FORMS = "carproof verify FOLDER, INSTANCE BOUND, or INSTANCE SOLUTION QUERY-CERTIFICATE"
 
 
-@click.command(
-    short_help="Check a certificate or a proof directory.",
-    epilog=examples(
-        "carproof verify town.json bound.json",
-        "carproof verify town.json plans.json r7.json --kernel",
-        "carproof verify proof",
-        "carproof bound town.json --json | carproof verify town.json -",
-    ),
+@listed(
+    "Check a certificate or a proof directory.",
+    "carproof verify town.json bound.json",
+    "carproof verify town.json plans.json r7.json --kernel",
+    "carproof verify proof",
+    "carproof bound town.json --json | carproof verify town.json -",
 )
 @click.argument("files", nargs=-1, required=True, type=InputFile(folders=True), metavar="[INSTANCE [SOLUTION]] FILE")
 @click.option("--instance", type=InputFile(), hidden=True)

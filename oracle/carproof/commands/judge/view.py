@@ -9,7 +9,7 @@ from carp_spec.documents.solutions import read_trace
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, Output, naming, read_file
 from carproof.command_line.foreign import Problem, solution_files
-from carproof.command_line.options import examples, output_option
+from carproof.command_line.options import listed, output_option
 from carproof.command_line.tables import print_table
 from carproof.viewer.limits import refuse_tick
 from carproof.viewer.page import view
@@ -19,17 +19,15 @@ from carproof.viewer.stills import view_chart, view_map
 PAGE, PICTURE = (".html", ".htm"), ".svg"
 
 
-@click.command(
-    short_help="Show plans on the map, in one HTML file.",
-    epilog=examples(
-        "carproof view town.json plans.json -o plans.html",
-        "carproof view town.json plans.json --at 12 -o tick-12.svg",
-        "carproof view town.json plans.json --chart -o chart.svg",
-        "carproof view town.json -o town.svg",
-        "carproof view town.json plans.json --trace trace.json -o executed.html",
-        "carproof plan town.json --json | carproof view town.json - -o plans.html",
-        "carproof view --map town.map --scen town.scen result.txt -o result.html",
-    ),
+@listed(
+    "Show plans on the map, in one HTML file.",
+    "carproof view town.json plans.json -o plans.html",
+    "carproof view town.json plans.json --at 12 -o tick-12.svg",
+    "carproof view town.json plans.json --chart -o chart.svg",
+    "carproof view town.json -o town.svg",
+    "carproof view town.json plans.json --trace trace.json -o executed.html",
+    "carproof plan town.json --json | carproof view town.json - -o plans.html",
+    "carproof view --map town.map --scen town.scen result.txt -o result.html",
 )
 @partial(solution_files, needs_solution=False)
 @click.option("--at", type=int, metavar="TICK", help="Draw the map at this tick, as a still SVG.")

@@ -1,25 +1,21 @@
 """`carproof add`: add one robot to given plans, by the neighbourhood planner."""
 
-import click
-
 from carp_spec import Neighbourhood
 from carp_spec.documents.solutions import write_solution
 from carp_spec.requests import require_new_robot
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, naming
-from carproof.command_line.options import Asked, asks_for_a_robot, examples, gives_plans, neighbourhood_options
+from carproof.command_line.options import Asked, asks_for_a_robot, gives_plans, listed, neighbourhood_options
 from carproof.command_line.output import show_addition
 from carproof.engines import engine_named
 
 
-@click.command(
-    short_help="Add one robot to given plans.",
-    epilog=examples(
-        """echo '{"format": "carproof-solution/1", "plans": [], "order": [],""",
-        """  "unplanned": []}' > nobody.json""",
-        "carproof add town.json nobody.json r1 -o plans.json",
-        "carproof add town.json plans.json r2 --now 2 --m 5",
-    ),
+@listed(
+    "Add one robot to given plans.",
+    """echo '{"format": "carproof-solution/1", "plans": [], "order": [],""",
+    """  "unplanned": []}' > nobody.json""",
+    "carproof add town.json nobody.json r1 -o plans.json",
+    "carproof add town.json plans.json r2 --now 2 --m 5",
 )
 @asks_for_a_robot
 @neighbourhood_options

@@ -9,19 +9,17 @@ from carp_spec.documents.instances import write_instance
 from carp_spec.documents.solutions import write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, OutputFile, write_whole
-from carproof.command_line.options import Asked, asks_for_a_robot, examples, gives_plans, neighbourhood_options
+from carproof.command_line.options import Asked, asks_for_a_robot, gives_plans, listed, neighbourhood_options
 from carproof.command_line.output import show_addition
 from carproof.command_line.tables import print_line
 from carproof.engines import engine_named
 from carproof.requests import whole_number
 
 
-@click.command(
-    short_help="Give a robot further stops.",
-    epilog=examples(
-        "carproof assign hall.json plans.json r1 7,3:10 0,2 --now 12 -o next.json",
-        "carproof assign hall.json plans.json r1 7,3 --now 12 --instance after.json",
-    ),
+@listed(
+    "Give a robot further stops.",
+    "carproof assign hall.json plans.json r1 7,3:10 0,2 --now 12 -o next.json",
+    "carproof assign hall.json plans.json r1 7,3 --now 12 --instance after.json",
 )
 @asks_for_a_robot
 @click.argument("stops", nargs=-1, required=True, metavar="STOP...")

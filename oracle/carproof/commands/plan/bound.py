@@ -10,7 +10,7 @@ from carp_spec.inputs.options import BOUND_SECONDS
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, Output, naming
 from carproof.command_line.foreign import MovingAI, Problem, benchmark_options, from_option, read_solution_of
-from carproof.command_line.options import examples, output_options
+from carproof.command_line.options import listed, output_options
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import warm
 from carproof.extras import require
@@ -19,16 +19,14 @@ from carproof.progress import found_so_far, gap, search_progress
 COLUMNS = ("robots", "shortest paths", "lower bound", "total cost", "gap", "steps", "time")
 
 
-@click.command(
-    short_help="Find a lower bound on the total cost.",
-    epilog=examples(
-        "carproof bound town.json -o certificate.json",
-        "carproof verify town.json certificate.json",
-        "carproof plan town.json -o plans.json",
-        "carproof bound town.json --seconds 60 --plans plans.json",
-        "carproof bound town.json --steps 500 --json",
-        "carproof bound --map town.map --scen town.scen --plans result.txt",
-    ),
+@listed(
+    "Find a lower bound on the total cost.",
+    "carproof bound town.json -o certificate.json",
+    "carproof verify town.json certificate.json",
+    "carproof plan town.json -o plans.json",
+    "carproof bound town.json --seconds 60 --plans plans.json",
+    "carproof bound town.json --steps 500 --json",
+    "carproof bound --map town.map --scen town.scen --plans result.txt",
 )
 @click.argument("instance", type=InputFile(), required=False)
 @benchmark_options

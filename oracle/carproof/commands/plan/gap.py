@@ -8,7 +8,7 @@ import click
 from carp_spec.documents.decoding import write
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, print_document, read_instance_file
-from carproof.command_line.options import examples, json_option, limit_option
+from carproof.command_line.options import json_option, limit_option, listed
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import warm
 from carproof.extras import require
@@ -19,9 +19,8 @@ if TYPE_CHECKING:
 COLUMNS = ("planner", "unplanned", "total", "above optimum", "price of an order", "price of the search")
 
 
-@click.command(
-    short_help="Compare every planner with the optimum.",
-    epilog=examples("carproof gap town.json", "carproof gap town.json --limit 300 --json"),
+@listed(
+    "Compare every planner with the optimum.", "carproof gap town.json", "carproof gap town.json --limit 300 --json"
 )
 @click.argument("instance", type=InputFile())
 @limit_option

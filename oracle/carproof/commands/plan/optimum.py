@@ -12,7 +12,7 @@ from carp_spec.documents.solutions import write_solution
 from carp_spec.inputs.options import MOST_PROCESSES, PROCESSES
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, print_document, read_instance_file, write_whole
-from carproof.command_line.options import examples, instance_argument, limit_option, output_options
+from carproof.command_line.options import instance_argument, limit_option, listed, output_options
 from carproof.command_line.tables import print_line, print_table, remark
 from carproof.engines import warm
 from carproof.extras import require
@@ -25,13 +25,11 @@ if TYPE_CHECKING:
 COLUMNS = ("robots", "shortest paths", "lower bound", "cost", "answer", "time")
 
 
-@click.command(
-    short_help="Find the least total cost, and plans that have it.",
-    epilog=examples(
-        "carproof optimum town.json",
-        "carproof optimum town.json --limit 300 -o best.json",
-        "carproof optimum town.json --proof proof && carproof verify proof",
-    ),
+@listed(
+    "Find the least total cost, and plans that have it.",
+    "carproof optimum town.json",
+    "carproof optimum town.json --limit 300 -o best.json",
+    "carproof optimum town.json --proof proof && carproof verify proof",
 )
 @instance_argument
 @limit_option

@@ -12,9 +12,9 @@ from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, naming, read_instance_file
 from carproof.command_line.options import (
     PLANNER_OPTIONS,
-    examples,
     gives_plans,
     instance_argument,
+    listed,
     planner_option,
     planner_options,
 )
@@ -28,16 +28,14 @@ FOR_FIRST_PLANS = 0.15
 """The seconds that the search for plans gets at least, however few are left."""
 
 
-@click.command(
-    short_help="Plan all robots of an instance.",
-    epilog=examples(
-        "carproof plan town.json",
-        "carproof plan town.json --seconds 10 -o plans.json",
-        "carproof plan town.json --m 6 -o plans.json",
-        "carproof plan town.json --planner shuffled --attempts 100 --seed 1",
-        "carproof plan town.json --planner fixed-paths --k 5 --paths disjoint",
-        "carproof generate grid --robots 50 | carproof plan - --json > plans.json",
-    ),
+@listed(
+    "Plan all robots of an instance.",
+    "carproof plan town.json",
+    "carproof plan town.json --seconds 10 -o plans.json",
+    "carproof plan town.json --m 6 -o plans.json",
+    "carproof plan town.json --planner shuffled --attempts 100 --seed 1",
+    "carproof plan town.json --planner fixed-paths --k 5 --paths disjoint",
+    "carproof generate grid --robots 50 | carproof plan - --json > plans.json",
 )
 @instance_argument
 @planner_option

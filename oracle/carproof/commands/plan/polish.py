@@ -12,7 +12,7 @@ from carp_spec.requests import require_tick, sound_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, Output, naming, read_file
 from carproof.command_line.foreign import Problem, solution_files
-from carproof.command_line.options import examples, gives_plans, now_option
+from carproof.command_line.options import gives_plans, listed, now_option
 from carproof.command_line.output import show_unplanned
 from carproof.command_line.tables import print_table
 from carproof.command_line.time_left import time_left, time_of_compiling
@@ -22,16 +22,14 @@ from carproof.progress import found_so_far, gap, search_progress
 COLUMNS = ("plans", "unplanned", "total cost", "bound", "gap", "rounds", "time")
 
 
-@click.command(
-    short_help="Improve given plans.",
-    epilog=examples(
-        "carproof polish town.json plans.json -o better.json",
-        "carproof polish town.json plans.json --seconds 5 -o better.json",
-        "carproof polish town.json plans.json --iterations 2000 --seed 7",
-        "carproof polish town.json plans.json --now 12 -o better.json",
-        "carproof polish town.json plans.json --bound certificate.json",
-        "carproof polish --map town.map --scen town.scen result.txt -o better.json",
-    ),
+@listed(
+    "Improve given plans.",
+    "carproof polish town.json plans.json -o better.json",
+    "carproof polish town.json plans.json --seconds 5 -o better.json",
+    "carproof polish town.json plans.json --iterations 2000 --seed 7",
+    "carproof polish town.json plans.json --now 12 -o better.json",
+    "carproof polish town.json plans.json --bound certificate.json",
+    "carproof polish --map town.map --scen town.scen result.txt -o better.json",
 )
 @solution_files
 @click.option("--iterations", type=int, help=f"The number of rounds.  [default: {ITERATIONS}]", show_default=False)

@@ -8,20 +8,18 @@ from carp_spec import plan_cost
 from carp_spec.documents.decoding import write
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, OutputFile, naming, write_whole
-from carproof.command_line.options import Asked, asks_for_a_robot, examples, gives_plans
+from carproof.command_line.options import Asked, asks_for_a_robot, gives_plans, listed
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import engine_named
 from carproof.judging.unplanned import why_unplanned
 from carproof.protocol.ops.planning import query_document
 
 
-@click.command(
-    short_help="Plan one robot beside given plans.",
-    epilog=examples(
-        "carproof query town.json plans.json r7",
-        "carproof query town.json plans.json r7 --now 12 --json",
-        "carproof query town.json plans.json r7 --certificate r7.json",
-    ),
+@listed(
+    "Plan one robot beside given plans.",
+    "carproof query town.json plans.json r7",
+    "carproof query town.json plans.json r7 --now 12 --json",
+    "carproof query town.json plans.json r7 --certificate r7.json",
 )
 @asks_for_a_robot
 @click.option("--certificate", type=OutputFile(), help="Write a proof that no plan arrives earlier to this file.")

@@ -9,7 +9,7 @@ from carproof.command_line.answer import Answer
 from carproof.command_line.files import STANDARD_INPUT, InputFile, Output, read_bytes, read_instance_file
 from carproof.command_line.foreign import AGENTS_HELP, MovingAI, described, read_solution_of
 from carproof.command_line.layouts import layout_options, order_options, show_layout
-from carproof.command_line.options import examples, output_options
+from carproof.command_line.options import listed, output_options
 from carproof.command_line.output import show_instance
 from carproof.formats import ADAPTERS, write_foreign_solution
 from carproof.formats.plans.vda5050 import VERSIONS, OrderSettings, write_orders
@@ -22,16 +22,14 @@ TO_HELP = (
 )
 
 
-@click.command(
-    short_help="Convert layouts, MovingAI files and solutions.",
-    epilog=examples(
-        "carproof convert plant.xml --robots 10 --tick 0.5s -o plant.json",
-        "carproof convert demo/depot.map demo/depot.scen -o depot.json",
-        "carproof convert town.map town.scen --agents 40 | carproof plan -",
-        "carproof convert town.json plans.json --to lacam -o result.txt",
-        "carproof convert town.json result.txt --to carproof -o plans.json",
-        "carproof convert plant.json plans.json --to vda5050-3 --at 12 --since 9",
-    ),
+@listed(
+    "Convert layouts, MovingAI files and solutions.",
+    "carproof convert plant.xml --robots 10 --tick 0.5s -o plant.json",
+    "carproof convert demo/depot.map demo/depot.scen -o depot.json",
+    "carproof convert town.map town.scen --agents 40 | carproof plan -",
+    "carproof convert town.json plans.json --to lacam -o result.txt",
+    "carproof convert town.json result.txt --to carproof -o plans.json",
+    "carproof convert plant.json plans.json --to vda5050-3 --at 12 --since 9",
 )
 @click.argument("first", metavar="LAYOUT|MAP|INSTANCE", type=InputFile())
 @click.argument("second", metavar="[SCEN|SOLUTION]", type=InputFile(), required=False)

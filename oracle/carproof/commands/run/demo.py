@@ -12,7 +12,7 @@ from carp_spec.documents.instances import write_instance
 from carp_spec.documents.solutions import write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import OutputFile, write_whole
-from carproof.command_line.options import examples
+from carproof.command_line.options import listed
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import plan_showing, sum_of_shortest_paths
 from carproof.formats.movingai import movingai_instance, read_map, read_scenario
@@ -22,10 +22,7 @@ COLUMNS = ("instance", "planner", "robots", "unplanned", "total\ncost", "shortes
 PLANNERS: dict[str, Planner] = {"carp": Carp(), "neighbourhood m=4": Neighbourhood(m=4)}
 
 
-@click.command(
-    short_help="Make, plan and check two instances.",
-    epilog=examples("carproof demo", "carproof demo /tmp/somewhere"),
-)
+@listed("Make, plan and check two instances.", "carproof demo", "carproof demo /tmp/somewhere")
 @click.argument("folder", type=click.Path(file_okay=False, path_type=Path), default=Path("demo"))
 def command(folder: Path) -> Answer:
     """Make, plan and check two instances, in FOLDER (demo if none is named).

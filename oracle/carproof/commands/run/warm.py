@@ -1,14 +1,12 @@
 """`carproof warm`: compile the planner before it is needed."""
 
-import click
-
 from carproof.command_line.answer import Answer
-from carproof.command_line.options import examples
+from carproof.command_line.options import listed
 from carproof.command_line.tables import print_line
 from carproof.engines import warm
 
 
-@click.command(short_help="Compile the planner before it is needed.", epilog=examples("carproof warm"))
+@listed("Compile the planner before it is needed.", "carproof warm")
 def command() -> Answer:
     """Compile the planner, so that no later command has to. This takes a minute, once per installation.
 
