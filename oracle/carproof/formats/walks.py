@@ -74,9 +74,8 @@ def solution_of_walks(instance: Instance, walks: Mapping[RobotId, Walk]) -> Solu
     """The solution in which robots make these walks; a robot without a walk is unplanned."""
     require_walks(instance)
     resources = {(each.x, each.y): each.id for each in instance.graph.resources}
-    plans = tuple(Plan(id, _visits(walks[id], resources)) for id in instance.robot if id in walks)
-    unplanned = tuple(id for id in instance.robot if id not in walks)
-    return Solution(plans, tuple(plan.robot for plan in plans), unplanned)
+    plans = (Plan(id, _visits(walks[id], resources)) for id in instance.robot if id in walks)
+    return Solution.of(instance, plans)
 
 
 def _visits(walk: Walk, resources: Mapping[tuple[int | None, int | None], ResourceId]) -> tuple[Visit, ...]:

@@ -45,11 +45,10 @@ class Lane:
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Points and lanes, as many vehicles at a time."""
+    """Points and lanes in which one vehicle may be at a time."""
 
     id: str
     members: tuple[str, ...]
-    capacity: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,7 +179,7 @@ class Layout:
         if self._is_taken(name):
             raise at.refuse(f"the name {name!r} must be given once")
 
-    def block(self, at: Tree, id: str, members: Sequence[tuple[Tree, str]], capacity: int = 1) -> None:
+    def block(self, at: Tree, id: str, members: Sequence[tuple[Tree, str]]) -> None:
         """Add a block of points and lanes; a member is each lane of its strip."""
         if id in self.blocks:
             raise at.refuse(f"the block {id!r} must be given once")
@@ -191,7 +190,7 @@ class Layout:
             if not self._is_taken(member):
                 raise place.refuse(f"the member {member!r} must be a point or a lane of the layout")
             named[member] = None
-        self.blocks[id] = Block(id, tuple(named), capacity)
+        self.blocks[id] = Block(id, tuple(named))
 
     def vehicle(self, at: Tree, id: str, start: str, goal: str | None = None) -> None:
         """Add a vehicle at a point."""

@@ -72,7 +72,7 @@ def _groups(layout: Layout, settings: Settings) -> Iterator[Group]:
         yield from (Group(named(f"at {point}"), tuple(held)) for point, held in at.items() if len(held) > 1)
     yield from (Group(named(f"strip {name}"), tuple(lanes)) for name, lanes in strips.items() if len(lanes) > 1)
     yield from (Group(named(f"place {name}"), held) for name, held in _at_one_place(layout) if len(held) > 1)
-    yield from (Group(each.id, each.members, each.capacity) for each in layout.blocks.values())
+    yield from (Group(each.id, each.members) for each in layout.blocks.values())
     if settings.footprint is not None:
         for each in conflicts(layout, settings.footprint):
             yield Group(named(str(each.id)), each.resources)
@@ -141,19 +141,16 @@ def _vehicles(layout: Layout, graph: ResourceGraph, settings: Settings) -> tuple
 
 def _requested(layout: Layout, data: bytes, file: str) -> Iterator[Robot]:
     """The robots of a table."""
-
-    def refuse(line: int, message: str) -> Refusal:
-        return Refusal("document", f"{file}:{line}", RIGHT_SETTINGS.id, message)
-
     seen: set[str] = set()
     for line, row in rows_of(RIGHT_SETTINGS.text(data, file), file, RIGHT_SETTINGS, COLUMNS, ("release",)):
+        where = f"{file}:{line}"
         if row["robot"] in seen:
-            raise refuse(line, f"the robot {row['robot']!r} must be given once")
+            raise RIGHT_SETTINGS.refuse(where, f"the robot {row['robot']!r} must be given once")
         seen.add(row["robot"])
         for name in ("start", "goal"):
             if row[name] not in layout.points:
-                raise refuse(line, f"the {name} must be a point of the layout, not {row[name]!r}")
+                raise RIGHT_SETTINGS.refuse(where, f"the {name} must be a point of the layout, not {row[name]!r}")
         release = row.get("release") or "0"
         if not (release.isascii() and release.isdigit() and len(release) < 10):  # noqa: PLR2004 - below 2^30
-            raise refuse(line, f"the release must be a whole number, not {release!r}")
+            raise RIGHT_SETTINGS.refuse(where, f"the release must be a whole number, not {release!r}")
         yield Robot(row["robot"], row["start"], row["goal"], int(release))

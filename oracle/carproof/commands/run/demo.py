@@ -15,7 +15,7 @@ from carproof.command_line.files import OutputFile, write_whole
 from carproof.command_line.options import listed
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import plan_showing, sum_of_shortest_paths
-from carproof.formats.movingai import movingai_instance, read_map, read_scenario
+from carproof.formats.movingai import read_movingai
 from carproof.generate import Fleet, Grid, grid_instance
 
 COLUMNS = ("instance", "planner", "robots", "unplanned", "total\ncost", "shortest\npaths", "rules\nbroken", "time")
@@ -56,8 +56,7 @@ def depot(folder: Path) -> Instance:
     map, scenario = ((files("carproof") / "examples" / name).read_bytes() for name in ("depot.map", "depot.scen"))
     write_whole(_file(folder / "depot.map"), map)
     write_whole(_file(folder / "depot.scen"), scenario)
-    grid = read_map(map)
-    return movingai_instance(grid, read_scenario(scenario, grid, None), "park")
+    return read_movingai(map, scenario)
 
 
 def planned(folder: Path, name: str, instance: Instance, planner: str) -> tuple[Sequence[object], bool]:

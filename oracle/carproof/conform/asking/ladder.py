@@ -185,25 +185,21 @@ def _warehouse(robots: int, traits: Traits, draw: Draw) -> Instance:
     return warehouse_instance(plan, _fleet(robots, draw, distinct=False), traits)
 
 
-def _corridor(robots: int, traits: Traits, draw: Draw) -> Instance:
-    """A long corridor in which all go to the right."""
-    return _row(4 * robots, robots, draw, traits)
-
-
 def _bottleneck(robots: int, traits: Traits, draw: Draw) -> Instance:
     """A short corridor, in which all robots meet; where its resources hold several, all start in the first of them."""
     length, room = draw.between(4, 12), traits.capacity.high
     if room == 1:
-        return _row(length, robots, draw, traits)
+        return _row(length, robots, traits, draw)
     most = max(3, min(room, robots // 2))
-    row = _row(length, robots, draw, replace(traits, capacity=Range(3, most)))
+    row = _row(length, robots, replace(traits, capacity=Range(3, most)), draw)
     first, *others = row.graph.resources
     graph = replace(row.graph, resources=(replace(first, capacity=min(robots, room)), *others))
     going = tuple(replace(each, start=0, release=draw.between(0, 3)) for each in row.robots)
     return replace(row, graph=graph, robots=going)
 
 
-def _row(length: int, robots: int, draw: Draw, traits: Traits) -> Instance:
+def _row(length: int, robots: int, traits: Traits, draw: Draw) -> Instance:
+    """A corridor in which all go to the right."""
     resources = tuple(
         Resource(x, traits.capacity.draw(draw.stream), traits.duration.draw(draw.stream), x, 0) for x in range(length)
     )
@@ -229,7 +225,7 @@ PLACES: dict[str, Callable[[int, Traits, Draw], Instance]] = {
     "bottleneck": _bottleneck,
     "warehouse": _warehouse,
     "map of the paper": _paper_map,
-    "corridor": _corridor,
+    "corridor": lambda robots, traits, draw: _row(4 * robots, robots, traits, draw),
 }
 
 

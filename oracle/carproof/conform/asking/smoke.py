@@ -53,8 +53,8 @@ def grouped(instance: Instance, *groups: Group) -> Instance:
 
 def committed(instance: Instance, **plans: Sequence[Stay]) -> Solution:
     """The solution with these plans, in the order given."""
-    made = tuple(Plan(robot, tuple(Visit(*stay) for stay in stays)) for robot, stays in plans.items())
-    return Solution(made, tuple(plans), tuple(robot for robot in instance.robot if robot not in plans))
+    made = (Plan(robot, tuple(Visit(*stay) for stay in stays)) for robot, stays in plans.items())
+    return Solution.of(instance, made)
 
 
 def _query(name: str, instance: Instance, now: int = 0, **plans: Sequence[Stay]) -> Case:
