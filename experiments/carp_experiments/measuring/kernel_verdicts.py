@@ -124,12 +124,9 @@ def changed(draw: Draw, certificate: QueryCertificateDocument) -> QueryCertifica
         return msgspec.structs.replace(certificate, now=draw.between(0, 12))
     elif kind == "label lost" and labels:
         del labels[draw.between(0, len(labels) - 1)]
-    elif kind == "label moved" and labels:
-        place = draw.between(0, len(labels) - 1)
-        labels[place] = (labels[place][0], labels[place][1] + draw.one_of([-1, 1]))
-    elif potential:
-        place = draw.between(0, len(potential) - 1)
-        potential[place] = (potential[place][0], potential[place][1] + draw.one_of([-1, 1]))
+    elif pairs := labels if kind == "label moved" and labels else potential:
+        place = draw.between(0, len(pairs) - 1)
+        pairs[place] = (pairs[place][0], pairs[place][1] + draw.one_of([-1, 1]))
     layers[chosen] = ServedLayer(tuple(labels), tuple(potential))
     if kind == "layer lost" and len(layers) > 1:
         del layers[chosen]

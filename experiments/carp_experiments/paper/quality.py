@@ -240,7 +240,7 @@ def quality_report(rows: Iterable[Row], robots: int) -> ExperimentReport:
         "quality-totals",
         "Mean total cost over the assignments that did not fail, with its 95 % interval",
         "algorithm",
-        {(each.algorithm, each.map): _mean(each.total) for each in shown},
+        {(each.algorithm, each.map): "all failed" if each.total is None else f"{each.total:.1f}" for each in shown},
     )
     return ExperimentReport(summary, (failures, totals))
 
@@ -273,7 +273,3 @@ def quality_figures(summary: QualitySummary) -> tuple[Figure, ...]:
 
 def _percent(rate: Interval) -> str:
     return f"{100 * rate.estimate:.1f} ({100 * rate.low:.1f} to {100 * rate.high:.1f})"
-
-
-def _mean(total: Interval | None) -> str:
-    return "all failed" if total is None else f"{total:.1f}"

@@ -119,13 +119,14 @@ def reuse_of(m: int, rows: Sequence[ReuseRow], robots: int) -> ReuseOf:
         for kind, count in row.avoided[m].items():
             avoided[kind].append(count)
     last = mean_interval([last_round(row, m) for row in rows]) if m in PAPERS_SHARES else None
-    left = [outside_left(row, m, robots) for row in rows]
+    everybody = queries_outside(m, robots)
+    left = [everybody - (row.asked["nothing"][m] - row.asked["kept"][m]) for row in rows]  # where some keep their plans
     return ReuseOf(
         m,
         asked,
         {kind: mean_interval(counts) for kind, counts in avoided.items()},
         last,
-        replanned=mean_interval([100 * count / queries_outside(m, robots) for count in left]),
+        replanned=mean_interval([100 * count / everybody for count in left]),
         orders=mean_interval([row.asked["the paper's"][m] - count for row, count in zip(rows, left, strict=True)]),
         outside=mean_interval(left),
     )
@@ -145,11 +146,6 @@ def last_round(row: ReuseRow, m: int) -> float:
 def queries_outside(m: int, robots: int) -> int:
     """The queries for the robots outside, in all rounds, where each is planned again."""
     return sum(robots - 1 - turn for turn in range(1, m))
-
-
-def outside_left(row: ReuseRow, m: int, robots: int) -> int:
-    """How many of them are left where those before the one taken out keep their plans."""
-    return queries_outside(m, robots) - (row.asked["nothing"][m] - row.asked["kept"][m])
 
 
 def percent(share: Interval | None) -> str:
