@@ -16,7 +16,7 @@ from carp_experiments.measuring.blocks import Questions
 from carp_experiments.measuring.kernel_verdicts import certified, fleet_questions
 from carp_experiments.measuring.texts import changed, vector_requests
 from carp_spec import Instance, Plan, Refusal, Solution, judge
-from carp_spec.documents.bounds import read_bound
+from carp_spec.documents.bounds import BoundDocument, read_bound
 from carp_spec.documents.decoding import require_json
 from carp_spec.documents.instances import digest, read_instance
 from carp_spec.documents.query_certificates import QueryCertificateDocument, read_query_certificate
@@ -75,47 +75,20 @@ def decided(text: bytes) -> Decided:
     try:
         require_json(text)
         asked = msgspec.json.decode(text, type=Request)
-        decide = QUESTIONS[asked.op, tuple(name for name in DOCUMENTS if getattr(asked, name) is not ABSENT)]
+        readers, decide = QUESTIONS[asked.op]
+        if [name for name in DOCUMENTS if getattr(asked, name) is not ABSENT] != [*readers]:
+            return Decided("bad input")
         instance = read_instance(bytes(asked.instance))
         if asked.op == "verify-bound":
             refuse_stops(instance)
-        answer = decide(instance, asked)
+        documents = [read(bytes(getattr(asked, name))) for name, read in readers.items()]
     except (Refusal, msgspec.DecodeError, KeyError):
         return Decided("bad input")
-    return answer()
+    return decide(instance, *documents)
 
 
-def _check(instance: Instance, asked: Request) -> Callable[[], Decided]:
-    solution = read_solution(bytes(asked.solution))
-    return lambda: _judged(instance, solution)
-
-
-def _verify_query(instance: Instance, asked: Request) -> Callable[[], Decided]:
-    solution = read_solution(bytes(asked.solution))
-    certificate = read_query_certificate(bytes(asked.certificate))
-    return lambda: _proved(lambda: verify_query(instance, solution, certificate))
-
-
-def _verify_bound(instance: Instance, asked: Request) -> Callable[[], Decided]:
-    """The kernel does not look at the digest of the instance."""
-    certificate = msgspec.structs.replace(read_bound(bytes(asked.certificate)), instance=digest(instance))
-    return lambda: _proved(lambda: verify_bound(instance, certificate))
-
-
-def _audit(instance: Instance, asked: Request) -> Callable[[], Decided]:
-    solution = read_solution(bytes(asked.solution))
-    documents = msgspec.json.decode(asked.certificates, type=list[msgspec.Raw])
-    certificates = [read_query_certificate(bytes(each)) for each in documents]
-    return lambda: _audited(instance, solution, certificates)
-
-
-DOCUMENTS = ("solution", "certificate", "certificates")
-QUESTIONS: Mapping[tuple[str, tuple[str, ...]], Callable[[Instance, Request], Callable[[], Decided]]] = {
-    ("check", ("solution",)): _check,
-    ("verify-query", ("solution", "certificate")): _verify_query,
-    ("verify-bound", ("certificate",)): _verify_bound,
-    ("audit", ("solution", "certificates")): _audit,
-}
+def _certificates(data: bytes) -> list[QueryCertificateDocument]:
+    return [read_query_certificate(bytes(each)) for each in msgspec.json.decode(data, type=list[msgspec.Raw])]
 
 
 def _judged(instance: Instance, solution: Solution) -> Decided:
@@ -128,6 +101,12 @@ def _proved(verify: Callable[[], int | None]) -> Decided:
         return Decided("accepted", (None, None, verify()))
     except Refusal as refusal:
         return Decided("refused", rules=(refusal.rule,))
+
+
+def _bounded(instance: Instance, certificate: BoundDocument) -> Decided:
+    """The kernel does not look at the digest of the instance."""
+    own = msgspec.structs.replace(certificate, instance=digest(instance))
+    return _proved(lambda: verify_bound(instance, own))
 
 
 def _audited(instance: Instance, solution: Solution, certificates: Sequence[QueryCertificateDocument]) -> Decided:
@@ -149,6 +128,19 @@ def _is_of(traffic: Traffic, certificate: QueryCertificateDocument, plan: Plan) 
     return (
         _proved(lambda: require_certificate(traffic, msgspec.structs.replace(certificate, now=0))).verdict == "accepted"
     )
+
+
+DOCUMENTS = ("solution", "certificate", "certificates")
+QUESTIONS: Mapping[str, tuple[Mapping[str, Callable[[bytes], Any]], Callable[..., Decided]]] = {
+    "check": ({"solution": read_solution}, _judged),
+    "verify-query": (
+        {"solution": read_solution, "certificate": read_query_certificate},
+        lambda instance, *proof: _proved(lambda: verify_query(instance, *proof)),
+    ),
+    "verify-bound": ({"certificate": read_bound}, _bounded),
+    "audit": ({"solution": read_solution, "certificates": _certificates}, _audited),
+}
+"""By op: the readers of its documents, and how it is decided."""
 
 
 def compared(first: int, texts: Sequence[bytes]) -> Texts:
