@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeAlias, TypeVar
+from typing import TypeAlias, TypeVar
 
 import msgspec
 
@@ -13,6 +13,7 @@ from carproof.markdown import markdown_table
 T = TypeVar("T")
 Point: TypeAlias = tuple[int, Interval | None]
 Lines: TypeAlias = Mapping[str, Sequence[Point]]
+ROUNDING = msgspec.json.Decoder(float_hook=lambda text: round(float(text), 5))
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,17 +91,8 @@ class ExperimentReport:
 def write_report(folder: Path, name: str, report: ExperimentReport, run: Mapping[str, object]) -> None:
     """Write `NAME.json`, with the facts of the run and all numbers, and `NAME.md` with the tables."""
     folder.mkdir(parents=True, exist_ok=True)
-    summary = rounded(msgspec.to_builtins(report.summary))
+    summary = ROUNDING.decode(msgspec.json.encode(report.summary))
     document = msgspec.json.encode({"experiment": name, **run, "summary": summary}, order="sorted")
     (folder / f"{name}.json").write_bytes(document + b"\n")
     text = "\n".join(f"{table.title}:\n\n{table.markdown}" for table in report.tables)
     (folder / f"{name}.md").write_text(text, encoding="utf-8")
-
-
-def rounded(value: Any) -> Any:  # noqa: ANN401 - whatever JSON holds
-    """The same with five decimals at most."""
-    if isinstance(value, float):
-        return round(value, 5)
-    if isinstance(value, dict):
-        return {name: rounded(each) for name, each in value.items()}
-    return [rounded(each) for each in value] if isinstance(value, list | tuple) else value
