@@ -83,11 +83,8 @@ def smallest_collision(instance: Instance, solution: Solution) -> tuple[Delay, .
     allow. A collision is either too many robots in a resource or a group when one enters, or two robots that exchange
     places. A delay is spent best at the visit that it makes too long. Of equal sums the fewest delays are taken.
     """
-
-    def worth(delays: Sequence[Delay]) -> tuple[int, int]:
-        return sum(delay.ticks for delay in delays), len(delays)
-
-    return min(_collisions(instance, solution), key=worth, default=None)
+    found = _collisions(instance, solution)
+    return min(found, key=lambda delays: (sum(delay.ticks for delay in delays), len(delays)), default=None)
 
 
 def _collisions(instance: Instance, solution: Solution) -> Iterator[tuple[Delay, ...]]:

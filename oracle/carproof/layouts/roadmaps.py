@@ -7,6 +7,7 @@ if they are known. Positions and lengths are in m, speeds in m/s.
 """
 
 from fractions import Fraction
+from itertools import product
 
 from carproof.layouts.layout import Layout, Reader
 from carproof.layouts.located import METRE, Tree, elements
@@ -63,11 +64,10 @@ def _conflicts(layout: Layout, roadmap: Tree, lanes: list[tuple[str, ...]]) -> N
             if (index := other.whole) >= len(lanes) or index == number or index in seen:
                 raise other.refuse(f"a conflict must be another of the {len(lanes)} edges, counted from 0, and once")
             seen.add(index)
-            for one in lanes[number]:
-                for two in lanes[index]:
-                    if one != two and frozenset((one, two)) not in done:
-                        done.add(frozenset((one, two)))
-                        layout.block(other, f"{one} | {two}", [(other, one), (other, two)])
+            for one, two in product(lanes[number], lanes[index]):
+                if one != two and frozenset((one, two)) not in done:
+                    done.add(frozenset((one, two)))
+                    layout.block(other, f"{one} | {two}", [(other, one), (other, two)])
 
 
 def _place(place: Tree) -> tuple[Fraction, Fraction]:

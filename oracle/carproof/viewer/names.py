@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
+from os.path import commonprefix
 
 from carproof.command_line.tables import printable
 
@@ -29,9 +30,7 @@ def common_start(names: Sequence[str]) -> str:
     """The beginning of all names, if some are long: it is left out where there is little room. No number is divided."""
     if len(names) <= 1 or max(map(len, names)) <= LONGEST_WHOLE:
         return ""
-    first, last = min(names), max(names)
-    same = next((at for at, (one, other) in enumerate(zip(first, last, strict=False)) if one != other), len(first))
-    start = first[:same].rstrip(DIGITS)
+    start = commonprefix(names).rstrip(DIGITS)  # noqa: RUF071 - names are no paths
     if start in names:
         start = start[: 1 + max(start.rfind(separator, 0, -1) for separator in SEPARATORS)]
     return start if len(start) >= FEWEST_CUT else ""
