@@ -57,7 +57,8 @@ def people_row(case: MapCase) -> Row:
     milliseconds: list[int] = []
     for number in range(PEOPLE[-1]):
         now = EVERY * (number + 1)
-        person = next((robot for robot in drawn if travels(solution, robot, now)), None)
+        travelling = {plan.robot for plan in solution.plans if plan.visits[-1].enter > now}
+        person = next((robot for robot in drawn if robot in travelling), None)
         if person is None:
             break
         drawn.remove(person)
@@ -79,11 +80,6 @@ def people_row(case: MapCase) -> Row:
             )
         )
     return {"people": people, MEASURED: milliseconds}
-
-
-def travels(solution: Solution, robot: RobotId, now: int) -> bool:
-    """Whether the robot has a plan and enters its goal after the tick now."""
-    return any(plan.robot == robot and plan.visits[-1].enter > now for plan in solution.plans)
 
 
 def delay_of(given_way: GivenWay) -> int | None:

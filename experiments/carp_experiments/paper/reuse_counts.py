@@ -119,7 +119,7 @@ def reuse_of(m: int, rows: Sequence[ReuseRow], robots: int) -> ReuseOf:
         for kind, count in row.avoided[m].items():
             avoided[kind].append(count)
     last = mean_interval([last_round(row, m) for row in rows]) if m in PAPERS_SHARES else None
-    everybody = queries_outside(m, robots)
+    everybody = sum(robots - 1 - turn for turn in range(1, m))  # queries for the robots outside, in all rounds
     left = [everybody - (row.asked["nothing"][m] - row.asked["kept"][m]) for row in rows]  # where some keep their plans
     return ReuseOf(
         m,
@@ -141,11 +141,6 @@ def last_round(row: ReuseRow, m: int) -> float:
         row.asked["nothing"][m - 1] - row.asked["prefixes"][m - 1]
     )
     return 100 * (1 - avoided / (m * factorial(m)))
-
-
-def queries_outside(m: int, robots: int) -> int:
-    """The queries for the robots outside, in all rounds, where each is planned again."""
-    return sum(robots - 1 - turn for turn in range(1, m))
 
 
 def percent(share: Interval | None) -> str:

@@ -70,10 +70,6 @@ class PolishOptions:
     seed: int = 0
 
 
-def _neighbourhood(request: Request) -> Planner:
-    return planner_named(Neighbourhood.name, request.options())
-
-
 def _planner(request: Request) -> Planner | None:
     if "planner" in request:
         return planner_named(request.take("planner", value_of(str)), request.options())
@@ -100,7 +96,7 @@ class Options:
 
 
 OPTIONS: Mapping[Any, Options] = {
-    Neighbourhood: Options((Neighbourhood,), _neighbourhood),
+    Neighbourhood: Options((Neighbourhood,), lambda request: planner_named(Neighbourhood.name, request.options())),
     Planner | None: Options(tuple(PLANNERS.values()), _planner),
     PolishOptions: Options((PolishOptions,), _polish_options),
 }
