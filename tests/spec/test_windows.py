@@ -61,6 +61,7 @@ def test_every_small_change_to_the_free_windows_is_refused(constraints: list[Con
             (window, window),
             (window, Window(last, last)),
             (window, Window(last + 1, last + 1)),
+            (window, Window(last + 2, last + 1)),
         ):
             assert not windows_are_free((*windows[:at], *others, *windows[at + 1 :]), constraints, gap)
     if len(windows) > 1:
