@@ -3,16 +3,17 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.spec.making import Stay, line, plan_of
 
-from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, Robot, Stop, Visit, judge
+from carp_spec import Instance, Plan, Refusal, Robot, Stop, Visit, judge
 from carp_spec.execution.logs import Served, judge_log
 from carp_spec.execution.traces import Trace
 from carproof.execution.delays import until
 from carproof.testing.strategies import PlannedInstance, broken_solutions, planned_instances
 
-LANE = ResourceGraph(tuple(Resource(cell) for cell in "abcd"), (("a", "b"), ("b", "c"), ("c", "d")))
+LANE = line("abcd")
 EAST = Robot("r", "a", stops=(Stop("c", 2), Stop("b")))
-UNDER_WAY = Plan("r", (Visit("a", 0, 1), Visit("b", 1, 2), Visit("c", 2, None)))
+UNDER_WAY = plan_of("r", ("a", 0, 1), ("b", 1, 2), ("c", 2, None))
 
 
 @given(planned_instances(), st.integers(0, 20))
@@ -60,38 +61,32 @@ def test_stops_served_so_far_are_told_with_the_visits_that_served_them() -> None
         ([("a", 0, 1)], "plan/goal"),
     ],
 )
-def test_a_log_keeps_the_rules_of_plans(visits: list[tuple[str, int, int | None]], rule: str) -> None:
-    log = Trace(5, (Plan("r", tuple(Visit(*visit) for visit in visits)),))
+def test_a_log_keeps_the_rules_of_plans(visits: list[Stay], rule: str) -> None:
+    log = Trace(5, (plan_of("r", *visits),))
     found = [each.rule for each in judge_log(Instance(LANE, (EAST,)), log).violations]
     assert rule in found
 
 
 @pytest.mark.parametrize(
     ("release", "visits", "rules"),
-    [
-        (6, [], []),
-        (5, [], ["plan/start"]),
-        (6, [("a", 3, None)], ["plan/start"]),
-    ],
+    [(6, [], []), (5, [], ["plan/start"]), (6, [("a", 3, None)], ["plan/start"])],
 )
-def test_a_robot_appears_at_its_release(
-    release: int, visits: list[tuple[str, int, int | None]], rules: list[str]
-) -> None:
+def test_a_robot_appears_at_its_release(release: int, visits: list[Stay], rules: list[str]) -> None:
     instance = Instance(LANE, (Robot("r", "a", "b", release=release),))
-    plans = (Plan("r", tuple(Visit(*visit) for visit in visits)),) if visits else ()
+    plans = (plan_of("r", *visits),) if visits else ()
     assert [each.rule for each in judge_log(instance, Trace(5, plans)).violations] == rules
 
 
 def test_what_robots_do_together_is_judged_up_to_the_end_of_the_log() -> None:
     instance = Instance(LANE, (Robot("r", "a", "c"), Robot("s", "c", "a")))
-    both = (Plan("r", (Visit("a", 0, 1), Visit("b", 1, None))), Plan("s", (Visit("c", 0, 1), Visit("b", 1, None))))
+    both = (plan_of("r", ("a", 0, 1), ("b", 1, None)), plan_of("s", ("c", 0, 1), ("b", 1, None)))
     found = judge_log(instance, Trace(4, both)).violations
     assert [(each.rule, each.start, each.end) for each in found] == [("joint/capacity", 1, 5)]
 
 
 def test_robots_that_are_released_later_may_be_absent_and_unknown_ones_may_not() -> None:
     instance = Instance(LANE, (Robot("late", "a", "b", release=6), Robot("now", "d", "b")))
-    log = Trace(5, (Plan("now", (Visit("d", 0, None),)), Plan("who", (Visit("a", 0, None),))))
+    log = Trace(5, (plan_of("now", ("d", 0, None)), plan_of("who", ("a", 0, None))))
     assert [(each.rule, each.robots) for each in judge_log(instance, log).violations] == [("solution/covers", ("who",))]
 
 

@@ -1,10 +1,13 @@
 """Certificates of lower bounds that are refused: forged, malformed, or too large."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from time import process_time
+from typing import Any
 
 import msgspec
 import pytest
+from tests.spec.making import instance_on, line, row
 from tests.verify.bound_examples import Tamper, completed, crossing, cut_certificate, deadline_certificate, priced
 
 from carp_optimum.bound import lower_bound
@@ -34,12 +37,14 @@ def test_a_bound_whose_claims_take_the_checker_too_long_claims_less_and_no_less_
     assert bounds[0] == shortest < bounds[-1]
 
 
+LANE = instance_on(line("ab"), Robot("r", "a", "b"))
+
+
 def sized(change: str) -> tuple[Instance, BoundDocument]:
     """A certificate with one size larger than all others."""
     if change == "prices":
-        lane = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
         prices = {"resources": (("a", 29, 1), ("b", 1, 1)), "exchanges": (("b", "a", 29, 1), ("a", "b", 3, 1))}
-        return lane, completed(lane, msgspec.structs.replace(lower_bound(lane, steps=1), horizon=30, **prices))
+        return LANE, completed(LANE, msgspec.structs.replace(lower_bound(LANE, steps=1), horizon=30, **prices))
     cuts = {"cuts": 2, "both": 1}.get(change, 0) * cut_certificate().cuts
     deadlines = {"deadlines": 3, "both": 1}.get(change, 0) * deadline_certificate().deadlines
     certificate = msgspec.structs.replace(cut_certificate(), cuts=cuts, deadlines=deadlines)
@@ -83,13 +88,11 @@ def test_a_bound_holds_where_following_is_forbidden_too() -> None:
 
 
 def test_prices_that_keep_a_robot_waiting_for_long_are_refused_after_a_bounded_search() -> None:
-    lane = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),))
-    instance = Instance(lane, (Robot("r", "a", "b"),))
     prices = (*(("b", tick, 10**12) for tick in range(1000)), ("b", 9_999_999, 1))
-    certificate = priced(instance, scale=1, horizon=10**7, resources=prices, robots=(("r", 0),))
+    certificate = priced(LANE, scale=1, horizon=10**7, resources=prices, robots=(("r", 0),))
     started = process_time()
     with pytest.raises(Refusal, match="bound"):
-        verify_bound(instance, certificate)
+        verify_bound(LANE, certificate)
     assert process_time() - started < 30
 
 
@@ -105,16 +108,13 @@ def test_a_cut_with_a_large_formula_is_refused_at_once(horizons: tuple[int, int]
 
 
 def test_stays_too_long_to_be_searched_are_refused_with_the_limit_named() -> None:
-    lane = ResourceGraph((Resource("a", duration=200_000), Resource("b")), (("a", "b"),))
     with pytest.raises(Refusal, match="must be at most 100000, the limit, and is 200000") as refused:
-        lower_bound(Instance(lane, (Robot("r", "a", "b"),)), steps=3)
+        lower_bound(replace(LANE, graph=line("ab", a=200_000)), steps=3)
     assert refused.value.rule == "bound/stay"
 
 
 def test_a_robot_without_a_way_is_named_and_left_out() -> None:
-    crossed = crossing()
-    lost = Robot("lost", "north", "island")
-    instance = Instance(crossed.graph, (crossed.robots[0], lost))
+    instance = instance_on(crossing().graph, crossing().robots[0], Robot("lost", "north", "island"))
     certificate = lower_bound(instance, steps=30)
     assert certificate.robots[1] == ("lost", None)
     assert verify_bound(instance, certificate) == 2
@@ -141,8 +141,7 @@ def test_that_others_reach_a_goal_or_leave_a_start_is_no_way_between_them(start:
 
 
 def test_an_instance_that_breaks_a_rule_has_no_bound() -> None:
-    cells = (Resource("a"), Resource("b", capacity=0))
-    instance = Instance(ResourceGraph(cells, (("a", "b"),)), (Robot("r", "a", "b"),))
+    instance = instance_on(row(1, 1, capacity=0), Robot("r", 0, 1))
     with pytest.raises(Refusal) as refused:
         verify_bound(instance, priced(instance, bound=2, scale=1, horizon=0, robots=(("r", 2),)))
     assert refused.value.rule == "instance/capacity"
@@ -216,26 +215,24 @@ def test_a_tampered_certificate_is_refused(tamper: Tamper, path: str | None, rul
     assert path in {None, refused.value.path}
 
 
-def test_a_scale_is_a_power_of_two() -> None:
-    scales = (*range(-8, 18), True, 1.0, 1 << 99, (1 << 99) + 1)
-    assert [scale for scale in scales if bound_rules.is_scale(scale)] == [1, 2, 4, 8, 16, 1 << 99]
-
-
-def test_prices_are_whole_numbers_at_ticks_before_the_horizon() -> None:
-    assert [tick for tick in (-1, 0, 4, 5, 6, True, 1.0) if bound_rules.is_price(0, tick, 5)] == [0, 4]
-    assert [price for price in (-1, 0, 1, 10**99, True, 1.0) if bound_rules.is_price(price, 0, 5)] == [0, 1, 10**99]
-
-
-def test_a_robots_least_cost_is_claimed_as_no_more_than_it_is() -> None:
-    claims = (None, -1, 0, 4, 5, 6, True, 4.0)
-    assert [claimed for claimed in claims if bound_rules.is_least(claimed, 5)] == [-1, 0, 4, 5]
-    assert [claimed for claimed in claims if bound_rules.is_least(claimed, None)] == [None]
+@pytest.mark.parametrize(
+    ("is_right", "values", "right"),
+    [
+        (bound_rules.is_scale, (*range(-8, 18), True, 1.0, 1 << 99, (1 << 99) + 1), [1, 2, 4, 8, 16, 1 << 99]),
+        (lambda tick: bound_rules.is_price(0, tick, 5), (-1, 0, 4, 5, 6, True, 1.0), [0, 4]),
+        (lambda price: bound_rules.is_price(price, 0, 5), (-1, 0, 1, 10**99, True, 1.0), [0, 1, 10**99]),
+        (lambda claimed: bound_rules.is_least(claimed, 5), (None, -1, 0, 4, 5, 6, True, 4.0), [-1, 0, 4, 5]),
+        (lambda claimed: bound_rules.is_least(claimed, None), (None, -1, 0, 4, True), [None]),
+    ],
+    ids=["a scale is a power of two", "a tick before the horizon", "a price", "a claim", "no way"],
+)
+def test_values_keep_their_rule(is_right: Callable[[Any], bool], values: Sequence[object], right: list[object]) -> None:
+    assert [value for value in values if is_right(value)] == right
 
 
 @pytest.mark.parametrize("place", [("a", "b"), ("b", "a")])
 def test_an_exchange_needs_moves_both_ways(place: tuple[str, str]) -> None:
-    one_way = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),), directed=True)
-    instance = Instance(one_way, (Robot("r", "a", "b"),))
+    instance = instance_on(line("ab", directed=True), Robot("r", "a", "b"))
     certificate = msgspec.structs.replace(lower_bound(instance, steps=1), horizon=3, exchanges=((*place, 1, 1),))
     with pytest.raises(Refusal, match="must be a resource, or two with a move each way") as refused:
         verify_bound(instance, certificate)

@@ -1,6 +1,7 @@
 """Bounds over stops: what robots pay at least is that of a search tick by tick, and bounds hold and are verified."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from heapq import heappop, heappush
 from itertools import count
 
@@ -37,7 +38,7 @@ def least_by_ticks(instance: Instance, robot: Robot, prices: BoundDocument) -> i
     """The least cost of the robot with its payments, by Dijkstra over its states tick by tick."""
     present = {(resource, tick): price for resource, tick, price in prices.resources}
     rows = {(source, target, tick): price for source, target, tick, price in prices.exchanges}
-    search = _Search(_alone(instance, robot))
+    search = _Search(replace(instance, robots=(robot,)))
     number = count()
     queue: list[tuple[int, int, int, State]] = [(0, next(number), -1, WAITS)]
     settled: set[tuple[int, State]] = set()
@@ -55,10 +56,6 @@ def least_by_ticks(instance: Instance, robot: Robot, prices: BoundDocument) -> i
             cost += _payment(state, after, tick + 1, present, rows)
             heappush(queue, (paid + cost, next(number), tick + 1, after))
     return None
-
-
-def _alone(instance: Instance, robot: Robot) -> Instance:
-    return Instance(instance.graph, (robot,), instance.after_goal)
 
 
 def _payment(

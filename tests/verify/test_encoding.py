@@ -3,11 +3,11 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, settings
 from tests.profiles import draws
-from tests.spec.making import row
+from tests.spec.making import plan_of, row
 from tests.verify.models import has_model, model_of
 from tests.verify.tiny import TINY
 
-from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, Robot, Visit, total_cost, violations_of
+from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, Robot, total_cost, violations_of
 from carp_verify.optimum.encoding import Conflict, Encoding, Exchange, violated
 from carp_verify.optimum.joint_search import least_total_cost
 from carproof.testing.strategies import PlannedInstance, instances, planned_instances
@@ -112,7 +112,7 @@ def test_a_conflict_is_named_by_its_tick_and_its_resources() -> None:
 
 def test_a_robot_that_comes_as_another_leaves_is_a_conflict_where_following_is_forbidden() -> None:
     behind = Instance(row(1, 1, 1), (Robot("a", 1, 2), Robot("b", 0, 1)), following="forbidden")
-    plans = [Plan("a", (Visit(1, 0, 1), Visit(2, 1, 2))), Plan("b", (Visit(0, 0, 1), Visit(1, 1, 2)))]
+    plans = [plan_of("a", (1, 0, 1), (2, 1, 2)), plan_of("b", (0, 0, 1), (1, 1, 2))]
     assert violated(behind, plans) == [Conflict(1, 1)]
     assert violated(replace(behind, following="allowed"), plans) == []
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from tests.spec.making import line
 from tests.verify.bound_examples import crossing, cut_certificate, priced
 from tests.verify.kernel_program import Json, program, run
 from tests.verify.test_kernel_optimum import claim
@@ -57,9 +58,7 @@ def answered(folder: Path, instance: Instance, document: BoundDocument) -> tuple
     return answer["verdict"], answer.get("rule")
 
 
-LANE = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
-
-
+LANE = Instance(line("ab"), (Robot("r", "a", "b"),))
 FORK = Instance(
     ResourceGraph(tuple(map(Resource, "abcx")), (("a", "b"), ("b", "c"), ("b", "x"))),
     (Robot("r", "a", "c"), Robot("s", "c", "a")),
@@ -107,13 +106,12 @@ def test_a_bound_that_would_take_long_is_refused_soon(what: str, tmp_path: Path)
 
 def test_a_robot_that_may_wait_for_ever_is_not_followed(tmp_path: Path) -> None:
     """Its ticks count in a cut alone, so that each of its ways costs the same."""
-    (cut,) = cut_certificate().cuts
-    instance = crossing()
-    robots = tuple((robot, 10**9 if robot in cut.robots else 0) for robot in instance.robot)
-    certificate = msgspec.structs.replace(
-        cut_certificate(), cuts=(msgspec.structs.replace(cut, multiplier=cut_certificate().scale),), robots=robots
-    )
-    assert answered(tmp_path, instance, certificate)[0] == "refused"
+    honest = cut_certificate()
+    (cut,) = honest.cuts
+    robots = tuple((robot, 10**9 if robot in cut.robots else 0) for robot in crossing().robot)
+    whole = msgspec.structs.replace(cut, multiplier=honest.scale)
+    certificate = msgspec.structs.replace(honest, cuts=(whole,), robots=robots)
+    assert answered(tmp_path, crossing(), certificate)[0] == "refused"
 
 
 def test_a_formula_of_too_late_cuts_is_not_made(tmp_path: Path) -> None:
@@ -126,16 +124,14 @@ def test_a_formula_of_too_late_cuts_is_not_made(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("duration", [10**6, 10**50])
 def test_a_robot_that_is_seen_in_a_long_stay_is_refused_or_undecided(duration: int, tmp_path: Path) -> None:
-    graph = ResourceGraph((Resource("a", duration=duration), Resource("b")), (("a", "b"),))
-    instance = Instance(graph, (Robot("r", "a", "b"),))
+    instance = replace(LANE, graph=line("ab", a=duration))
     deadlines = DeadlinesDocument(("r",), (duration,), 0, "2 0 1 0\n", seen=((5, ("a",)),))
     document = bound_of(instance, bound=duration, robots=(("r", duration),), deadlines=(deadlines,))
     assert answered(tmp_path, instance, document)[0] in ("refused", "undecided")
 
 
 def test_long_stays_under_late_prices_are_undecided(tmp_path: Path) -> None:
-    graph = ResourceGraph((Resource("a", duration=10**7), Resource("b", duration=10**7)), (("a", "b"),))
-    instance = Instance(graph, (Robot("r", "a", "b"),), "park")
+    instance = replace(LANE, graph=line("ab", a=10**7, b=10**7), after_goal="park")
     document = bound_of(instance, resources=(("b", 19_999_999, 1),), robots=(("r", 10**7 + 100),))
     assert answered(tmp_path, instance, document)[0] in ("refused", "undecided")
 
@@ -274,7 +270,6 @@ def test_serving_ends_well_with_its_input() -> None:
 
 
 def test_no_formula_is_shown_where_none_is_made(tmp_path: Path) -> None:
-    graph = ResourceGraph(LANE.graph.resources, LANE.graph.edges, directed=True)
-    claim(tmp_path, Instance(graph, (Robot("r", "b", "a"),)), 1, Evidence((0,), (0,)))
+    claim(tmp_path, Instance(line("ab", directed=True), (Robot("r", "b", "a"),)), 1, Evidence((0,), (0,)))
     code, answer, _ = run("formula", tmp_path)
     assert (code, answer["verdict"], answer["rule"]) == (1, "refused", "proof/way")
