@@ -1,7 +1,6 @@
 """The naive twin: hand-made cases and its limit; that it agrees with the query, test_twins holds."""
 
 import pytest
-from tests import twin
 from tests.spec.making import instance, line, plan_of
 
 from carp_reference import plan, time_expanded
@@ -43,17 +42,3 @@ def test_what_it_holds_is_counted_to_the_tick(monkeypatch: pytest.MonkeyPatch) -
                 time_expanded.table_of(two, (parked,))
         else:
             assert time_expanded.table_of(two, (parked,)).still == 4
-
-
-def test_it_plans_at_tick_0_unless_it_is_told_when() -> None:
-    one = instance(line("abc"), ("b", "c"))
-    wrong_way = plan_of("r0", ("b", 0, 1), ("a", 1, 2), ("b", 2, 3), ("c", 3, 4))
-    assert twin.find_plan_by_ticks(one, (), "r0", before=wrong_way) == plan_of("r0", ("b", 0, 1), ("c", 1, 2))
-    assert twin.find_plan_by_ticks(one, (), "r0", 1, wrong_way) == wrong_way
-
-
-def test_a_robot_that_stayed_at_its_goal_too_long_to_vanish_there_comes_back_to_it() -> None:
-    one = instance(line("ab"), ("a", "a"))
-    wandering = plan_of("r0", ("a", 0, 4), ("b", 4, 5), ("a", 5, 6))
-    back = plan_of("r0", ("a", 0, 2), ("b", 2, 3), ("a", 3, 4))
-    assert twin.find_plan_by_ticks(one, (), "r0", 2, wandering) == back

@@ -7,7 +7,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from msgspec import structs
 from tests.spec.making import PARKED, SOLVED, plan_of
-from tests.spec.strategies import FEWER
 
 from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Stop, Visit, has_ended
 from carp_spec.instance_rules import stops_are_places_to_serve
@@ -111,10 +110,3 @@ def test_history_is_kept_if_the_robot_was_tick_by_tick_where_it_was(
     elif present[1] == now:
         kept = kept and any((visit.resource, visit.enter) == present for visit in new.visits)
     assert (not list(plan_keeps_history(old, new, now))) == kept
-
-
-@FEWER
-@given(stays=STAYS, parks=st.booleans(), now=st.integers(-1, 12))
-def test_a_plan_keeps_its_own_history(stays: list[tuple[str, int]], parks: bool, now: int) -> None:
-    plan = walk(stays, parks)
-    assert not list(plan_keeps_history(plan, plan, now))

@@ -7,20 +7,20 @@ from itertools import count
 
 import msgspec
 import pytest
+from tests.verify.bound_examples import SCALE, priced
 from tests.verify.plain_search import least_cost_of
 from tests.verify.tiny import STOPPING, case
 
 from carp_optimum.bound import lower_bound
 from carp_spec import Instance, Refusal, ResourceId, Robot
-from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
-from carp_spec.documents.instances import digest
+from carp_spec.documents.bounds import BoundDocument
 from carp_verify.bound.tariff import Fees, Tariff
 from carp_verify.bound.verify import verify_bound
 from carp_verify.optimum.joint_search import WAITS, State, _Search, least_total_cost
 from carproof.testing.random_instances import Draw
 
 PARTS, SIZE = 4, 40
-HORIZON, SCALE = 14, 4
+HORIZON = 14
 LAST = 90  # no cheapest plan of a tiny robot is longer
 
 
@@ -31,7 +31,7 @@ def drawn_prices(instance: Instance, draw: Draw) -> BoundDocument:
     resources = [(each, tick, draw.between(1, 9)) for each in graph.index for tick in ticks if draw.between(0, 2) == 0]
     both = sorted((move for move in graph.moves if move[::-1] in graph.moves), key=str)
     exchanges = [(*move, tick, draw.between(1, 9)) for move in both for tick in ticks if draw.between(0, 5) == 0]
-    return BoundDocument(BOUND_FORMAT, digest(instance), 0, SCALE, HORIZON, tuple(resources), tuple(exchanges), (), ())
+    return priced(instance, horizon=HORIZON, resources=tuple(resources), exchanges=tuple(exchanges))
 
 
 def least_by_ticks(instance: Instance, robot: Robot, prices: BoundDocument) -> int | None:

@@ -10,15 +10,18 @@ from typing import get_args
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.spec.making import line, plan_of, solution_of
 from tests.verify.forging import changed
 from tests.verify.kernel_program import ask, check, encoded, refusal_of, require_bad_input, run, served
+from tests.verify.test_kernel_optimum import claim
 
-from carp_spec import Group, Instance, Resource, ResourceGraph, Robot, judge
-from carp_spec.documents.instances import instance_document, read_instance
+from carp_spec import Group, Instance, Robot, Stop, judge
+from carp_spec.documents.instances import read_instance
 from carp_spec.documents.query_certificates import read_query_certificate
 from carp_spec.documents.solutions import read_solution
 from carp_spec.documents.vectors import Vector
 from carp_spec.model import Following
+from carp_verify.optimum.encoding import Evidence
 from carproof.testing.mutations import BrokenSolution
 from carproof.testing.strategies import PlannedInstance, Sizes, broken_solutions, planned_instances
 from carproof.testing.vectors import subjects, vectors
@@ -34,18 +37,8 @@ def vectors_of(op: str) -> list[Vector]:
 
 @pytest.mark.parametrize("command", ["verify-proof", "formula"])
 def test_the_kernel_refuses_proofs_of_robots_with_stops_by_name(command: str, tmp_path: Path) -> None:
-    serving = INSTANCE.replace('"goal": "b"', '"stops": [{"resource": "b", "service": 1}]')
-    manifest = {
-        "format": "carproof-proof/2",
-        "claim": "optimum",
-        "sha256": {},
-        "cost": 1,
-        "horizons": [1],
-        "order": [0],
-    }
-    (tmp_path / "instance.json").write_text(serving)
-    (tmp_path / "manifest.json").write_text(json.dumps(manifest))
-    (tmp_path / "beat.lrat").touch()
+    serving = Robot("r", "a", stops=(Stop("b", 1),))
+    claim(tmp_path, Instance(line("ab"), (serving,)), 1, Evidence((1,), (0,)))
     code, verdict, _ = run(command, tmp_path)
     assert (code, verdict["path"], verdict["rule"]) == (2, "$.robots[0].stops", "limit/stops")
 
@@ -240,10 +233,7 @@ def test_a_command_that_is_none_is_bad_input() -> None:
 @pytest.mark.parametrize("off", [0, 1])
 def test_ticks_of_any_size_are_told_apart(shift: int, off: int) -> None:
     """No tick overflows: a plan is right where it starts at its release, and wrong a tick or 2^64 beside it."""
-    instance = Instance(ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b", shift),))
+    instance = Instance(line("ab"), (Robot("r", "a", "b", shift),))
     start = shift + off
-    visits = [["a", start, start + 1], ["b", start + 1, start + 2]]
-    plan = {"robot": "r", "visits": visits}
-    solution = {"format": "carproof-solution/1", "plans": [plan], "order": ["r"], "unplanned": []}
-    verdict = ask(encoded(op="check", instance=instance_document(instance), solution=solution).replace("\\", ""))
-    assert verdict["verdict"] == ("refused" if off else "accepted")
+    plan = plan_of("r", ("a", start, start + 1), ("b", start + 1, start + 2))
+    assert check(instance, solution_of([plan]))["verdict"] == ("refused" if off else "accepted")

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from tests.verify.bound_examples import cut_of
+from tests.spec.making import line
+from tests.verify.bound_examples import cut_of, priced
 from tests.verify.kernel_program import Json, check_bound, program, run, served
 from tests.verify.models import has_model
 from tests.verify.test_proof import change_manifest, crossing, drop_last_line, prove
@@ -19,8 +20,8 @@ from carp_optimum.optimum import optimum
 from carp_optimum.sat.proving import refutation, write_proof
 from carp_optimum.sat.solver import Deadline
 from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot
-from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, DeadlinesDocument
-from carp_spec.documents.instances import digest, read_instance, write_instance
+from carp_spec.documents.bounds import BoundDocument, DeadlinesDocument
+from carp_spec.documents.instances import read_instance, write_instance
 from carp_spec.permutations import shuffle
 from carp_verify.bound.cuts import formula_of_deadlines, group_of
 from carp_verify.bound.rules import LARGEST_FORMULA
@@ -180,8 +181,7 @@ def test_the_formula_on_file_does_not_matter(tmp_path: Path) -> None:
 
 
 def test_no_total_is_proved_of_a_robot_without_a_way(tmp_path: Path) -> None:
-    graph = ResourceGraph((Resource(0), Resource(1)), ((0, 1),), directed=True)
-    claim(tmp_path, Instance(graph, (Robot("a", 1, 0),)), 3, Evidence((0,), (0,)), "2 0 1 0\n")
+    claim(tmp_path, Instance(line("ab", directed=True), (Robot("a", "b", "a"),)), 3, Evidence((0,), (0,)), "2 0 1 0\n")
     answer = verdict(tmp_path)
     assert (answer["verdict"], answer["rule"]) == ("refused", "proof/way")
     assert answer["message"] == "no way leads to the goal of robot a"
@@ -242,7 +242,7 @@ def test_cuts_of_some_robots_in_any_order_are_accepted(first: int) -> None:
             claims = tuple((id, 0 if id in chosen else cost) for id, cost in shortest.items())
             bound = least + sum(cost for _, cost in claims)
             cut = cut_of(instance, chosen, least)
-            document = BoundDocument(BOUND_FORMAT, digest(instance), bound, 1, 0, (), (), (cut,), claims)
+            document = priced(instance, bound=bound, scale=1, horizon=0, cuts=(cut,), robots=claims)
             assert verify_bound(instance, document) == bound
             assert check_bound(instance, document) == {"kernel": "1", "verdict": "accepted", "bound": bound}
             accepted += 1
@@ -254,7 +254,7 @@ def late_bound(instance: Instance, deadlines: DeadlinesDocument) -> BoundDocumen
     shortest = {each.robot.id: each.shortest or 0 for each in Encoding(instance).robots}
     claims = tuple((id, cost + (id in deadlines.robots)) for id, cost in shortest.items())
     bound = 1 + sum(shortest.values())
-    return BoundDocument(BOUND_FORMAT, digest(instance), bound, 1, 0, (), (), (), claims, (deadlines,))
+    return priced(instance, bound=bound, scale=1, horizon=0, robots=claims, deadlines=(deadlines,))
 
 
 @pytest.mark.usefixtures("_kernel")

@@ -88,13 +88,10 @@ def test_a_file_that_is_replaced_meanwhile_is_refused(
 
 
 @pytest.mark.parametrize("name", ["manifest.json", "instance.json", "beat.lrat"])
-@pytest.mark.parametrize("replaced", [os.mkfifo, lambda path: path.symlink_to("/dev/zero")])
-def test_a_proof_with_such_a_file_is_not_proved(
-    carproof: Run, folder: Path, name: str, replaced: Callable[[Path], object]
-) -> None:
+def test_a_proof_with_such_a_file_is_not_proved(carproof: Run, folder: Path, name: str) -> None:
     carproof("optimum town.json --proof proof")
     (folder / "proof" / name).unlink()
-    replaced(folder / "proof" / name)
+    os.mkfifo(folder / "proof" / name)
     outcome = carproof("verify proof")
     assert (outcome.code, outcome.stderr) == (1, "")
     assert outcome.stdout.startswith(f"not proved: {name}: it must be a plain file, and is ")

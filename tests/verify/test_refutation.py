@@ -26,10 +26,6 @@ def is_satisfiable(clauses: tuple[Clause, ...]) -> bool:
     )
 
 
-def test_a_refutation_with_hints_is_accepted() -> None:
-    require_refutation(SQUARE, REFUTED)
-
-
 def test_clauses_that_are_forgotten_may_have_served_before() -> None:
     require_refutation(SQUARE, "5 1 0 1 2 0\n5 d 1 2 0\n6 0 5 3 4 0\n")
     with pytest.raises(NotRefutedError, match="line 3 has the hint 1, which is the number of no clause there"):
