@@ -11,12 +11,6 @@ from carp_spec import Carp, Refusal, Resource, Robot
 from carproof import instance_from_networkx, read_instance, write_instance
 
 
-def placed(x: object) -> "nx.Graph[Any]":
-    graph: nx.Graph[Any] = nx.Graph()
-    graph.add_node("a", x=x, y=1)
-    return graph
-
-
 def test_nodes_are_resources_and_edges_moves() -> None:
     graph: nx.Graph[Any] = nx.Graph()
     graph.add_node("a", capacity=2, duration=3, pos=(4, 5), colour="red")
@@ -27,38 +21,6 @@ def test_nodes_are_resources_and_edges_moves() -> None:
     assert instance.graph.resources == (Resource("a", 2, 3, 4, 5), Resource(1, x=0, y=-1), Resource("c"))
     assert instance.graph.successors == {"a": (1,), 1: ("a",), "c": ()}
     assert (instance.after_goal, instance.graph.directed) == ("park", False)
-
-
-@pytest.mark.parametrize(
-    ("node", "attributes", "attribute", "right"),
-    [
-        ((0, None), {}, "", "a string, a whole number or a tuple of these"),
-        ((), {}, "", "a string, a whole number or a tuple of these"),
-        (True, {}, "", "a string, a whole number or a tuple of these"),
-        (1.0, {}, "", "a string, a whole number or a tuple of these"),
-        ("a", {"capacity": 1.0}, ".capacity", "a whole number"),
-        ("a", {"duration": True}, ".duration", "a whole number"),
-        ("a", {"duration": np.float64(2)}, ".duration", "a whole number"),
-        ("a", {"x": "1", "y": 1}, ".x", "a whole number"),
-        ("a", {"x": 1, "y": 0.5}, ".y", "a scale, such as scale=100"),
-        ("a", {"pos": (0.5, 1)}, ".pos", "a scale, such as scale=100"),
-        ("a", {"pos": (1, 2, 3)}, ".pos", "a pair"),
-        ("a", {"pos": "12"}, ".pos", "a pair"),
-        ("a", {"pos": None}, ".pos", "a pair"),
-    ],
-)
-def test_a_node_that_is_no_resource_is_refused(
-    node: Any,  # noqa: ANN401 - nonsense too
-    attributes: dict[str, Any],
-    attribute: str,
-    right: str,
-) -> None:
-    graph: nx.Graph[Any] = nx.Graph()
-    graph.add_node(node, **attributes)
-    with pytest.raises(Refusal, match="adapter/networkx") as refused:
-        instance_from_networkx(graph, [])
-    assert refused.value.path == f"node {node!r}{attribute}"
-    assert right in refused.value.message
 
 
 def test_tuples_and_numbers_of_numpy_are_taken() -> None:
@@ -81,28 +43,49 @@ def test_metric_positions_are_taken_with_a_scale() -> None:
     assert [(each.x, each.y) for each in instance.graph.resources] == [(12, -200), (50, 200)]
 
 
+def node(id: object, **attributes: object) -> "nx.Graph[Any]":
+    """A graph of one node."""
+    graph: nx.Graph[Any] = nx.Graph()
+    graph.add_node(id, **attributes)
+    return graph
+
+
 DIGRAPH: Any = nx.DiGraph([(1, 2), (2, 3), (3, 1)])
 
 
 @pytest.mark.parametrize(
-    ("graph", "robots", "scale", "path"),
+    ("graph", "options", "path"),
     [
-        (3, [], None, "graph"),
-        ({"a": ["b"]}, [], None, "graph"),
-        (nx.MultiGraph([(1, 2), (1, 2)]), [], None, "graph"),
-        (DIGRAPH, [3], None, "$.robots[0]"),
-        (DIGRAPH, [], 0, "$.scale"),
-        (DIGRAPH, [], 0.5, "$.scale"),
-        (DIGRAPH, [], True, "$.scale"),
-        (placed(float("nan")), [], 100, "node 'a'.x"),
-        (placed("1"), [], 100, "node 'a'.x"),
-        (placed(True), [], 100, "node 'a'.x"),
+        (3, {}, "graph"),
+        ({"a": ["b"]}, {}, "graph"),
+        (nx.MultiGraph([(1, 2), (1, 2)]), {}, "graph"),
+        (DIGRAPH, {"robots": [3]}, "$.robots[0]"),
+        (DIGRAPH, {"scale": 0}, "$.scale"),
+        (DIGRAPH, {"scale": 0.5}, "$.scale"),
+        (DIGRAPH, {"scale": True}, "$.scale"),
+        (node((0, None)), {}, "node (0, None)"),
+        (node(()), {}, "node ()"),
+        (node(True), {}, "node True"),
+        (node(1.0), {}, "node 1.0"),
+        (node("a", capacity=1.0), {}, "node 'a'.capacity"),
+        (node("a", duration=True), {}, "node 'a'.duration"),
+        (node("a", duration=np.float64(2)), {}, "node 'a'.duration"),
+        (node("a", x="1", y=1), {}, "node 'a'.x"),
+        (node("a", x=1, y=0.5), {}, "node 'a'.y"),
+        (node("a", x=float("nan"), y=1), {"scale": 100}, "node 'a'.x"),
+        (node("a", x="1", y=1), {"scale": 100}, "node 'a'.x"),
+        (node("a", x=True, y=1), {"scale": 100}, "node 'a'.x"),
+        (node("a", pos=(0.5, 1)), {}, "node 'a'.pos"),
+        (node("a", pos=(1, 2, 3)), {}, "node 'a'.pos"),
+        (node("a", pos="12"), {}, "node 'a'.pos"),
+        (node("a", pos=None), {}, "node 'a'.pos"),
     ],
 )
-def test_what_is_no_graph_robot_or_scale_is_refused(graph: Any, robots: Any, scale: Any, path: str) -> None:  # noqa: ANN401
+def test_what_is_no_graph_node_robot_or_scale_is_refused(graph: Any, options: dict[str, Any], path: str) -> None:  # noqa: ANN401
     with pytest.raises(Refusal) as caught:
-        instance_from_networkx(graph, robots, scale=scale)
+        instance_from_networkx(graph, **{"robots": [], **options})
     assert caught.value.path == path
+    assert caught.value.rule == ("document/shape" if "robots" in options else "adapter/networkx")
 
 
 def test_a_broken_rule_of_instances_names_the_node_or_the_edge() -> None:
