@@ -20,7 +20,6 @@ from carp_spec import (
     Carp,
     Instance,
     Plan,
-    Refusal,
     Resource,
     ResourceGraph,
     Robot,
@@ -200,13 +199,3 @@ def test_rounds_add_up_however_many_a_compiled_call_plays(monkeypatch: pytest.Mo
     polished = carp_optimized.polish(instance, given, iterations=333, seed=9)
     monkeypatch.setattr("carp_optimized.planners.ROUNDS", 7)
     assert carp_optimized.polish(instance, given, iterations=333, seed=9) == polished
-
-
-def test_a_solution_that_breaks_a_rule_is_refused_by_it() -> None:
-    instance = grid_instance(Grid(3, 3), Fleet(robots=2, seed=1))
-    plans = carp_optimized.plan(instance, Carp())
-    broken = Solution((plans.plans[0],) * 2, plans.order)
-    for engine in (carp_reference, carp_optimized):
-        with pytest.raises(Refusal) as refused:
-            engine.polish(instance, broken, iterations=1)
-        assert refused.value.rule == "solution/covers"

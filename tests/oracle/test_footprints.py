@@ -23,37 +23,33 @@ def apart(lanes: list[tuple[Place, Place]], size: Footprint) -> bool:
     return names not in kept_apart(plant(lanes, footprint=size), size)
 
 
+NARROW, WIDE, DISC = Footprint(900, 600), Footprint(900, 900, round=True), Footprint(6, 6, round=True)
+ALONG_3_4 = [((0, 0), (3000, 4000)), ((400, -300), (3400, 3700))]
+"""500 mm apart: there the distance of parallel lanes is whole."""
+ALONG_1_2 = [((0, 0), (1000, 2000)), ((1000, 0), (2000, 2000))]
+"""1000 * 2 / sqrt(5) = 894.427 mm apart."""
+
+
 @pytest.mark.parametrize(
-    ("gap", "size", "are_apart"),
+    ("lanes", "size", "are_apart"),
     [
-        (600, Footprint(900, 600), True),  # they touch
-        (599, Footprint(900, 600), False),
-        (900, Footprint(900, 900, round=True), True),
-        (899, Footprint(900, 900, round=True), False),
+        ([((0, 0), (5000, 0)), ((0, 600), (5000, 600))], NARROW, True),  # they touch
+        ([((0, 0), (5000, 0)), ((0, 599), (5000, 599))], NARROW, False),
+        ([((0, 0), (5000, 0)), ((0, 900), (5000, 900))], WIDE, True),
+        ([((0, 0), (5000, 0)), ((0, 899), (5000, 899))], WIDE, False),
+        ([((5000, 0), (9000, 0)), ((8900, -2000), (8900, 2000))], NARROW, False),  # they cross near the end of one
+        ([((0, 0), (2, 0)), ((-5, 3), (-7, 3))], DISC, False),  # their starts are nearest: 34 in square, not 36
+        ([((0, 0), (2, 0)), ((-6, 0), (-8, 0))], DISC, True),
+        (ALONG_3_4, Footprint(10, 500), True),
+        (ALONG_3_4, Footprint(10, 501), False),
+        (ALONG_1_2, Footprint(10, 894), True),
+        (ALONG_1_2, Footprint(10, 895), False),
     ],
 )
-def test_parallel_lanes_may_be_used_together_if_vehicles_only_touch(gap: int, size: Footprint, are_apart: bool) -> None:
-    assert apart([((0, 0), (5000, 0)), ((0, gap), (5000, gap))], size) == are_apart
-
-
-def test_lanes_that_cross_near_the_end_of_one_are_found() -> None:
-    assert not apart([((5000, 0), (9000, 0)), ((8900, -2000), (8900, 2000))], Footprint(900, 600))
-
-
-def test_the_nearest_points_of_two_lanes_may_be_their_starts() -> None:
-    """5 and 3 mm apart, 34 in square, where discs of a radius of 3 mm need 36."""
-    assert not apart([((0, 0), (2, 0)), ((-5, 3), (-7, 3))], Footprint(6, 6, round=True))
-    assert apart([((0, 0), (2, 0)), ((-6, 0), (-8, 0))], Footprint(6, 6, round=True))
-
-
-def test_slanted_lanes_are_compared_without_rounding() -> None:
-    """Along (3, 4) the distance of parallel lanes is whole: 5 for a shift of (0, 25 / 3) times three fifths."""
-    lanes = [((0, 0), (3000, 4000)), ((400, -300), (3400, 3700))]  # 500 apart
-    assert apart(lanes, Footprint(10, 500))
-    assert not apart(lanes, Footprint(10, 501))
-    lanes = [((0, 0), (1000, 2000)), ((1000, 0), (2000, 2000))]  # 1000 * 2 / sqrt(5) = 894.427 apart
-    assert apart(lanes, Footprint(10, 894))
-    assert not apart(lanes, Footprint(10, 895))
+def test_lanes_may_be_used_together_if_vehicles_only_touch(
+    lanes: list[tuple[Place, Place]], size: Footprint, are_apart: bool
+) -> None:
+    assert apart(lanes, size) == are_apart
 
 
 def test_a_vehicle_that_turns_sweeps_a_disc_and_one_that_goes_on_does_not() -> None:

@@ -71,9 +71,12 @@ def with_graph(**values: object) -> Instance:
     return replace(RIGHT, graph=replace(RIGHT.graph, **values))  # type: ignore[arg-type]
 
 
+def with_plan(**values: object) -> Solution:
+    return replace(SOLVED, plans=(replace(OF_R, **values), OF_S))  # type: ignore[arg-type]
+
+
 def with_visit(*visit: object) -> Solution:
-    visits = (OF_R.visits[0], Visit(*visit), OF_R.visits[2])  # type: ignore[arg-type]
-    return replace(SOLVED, plans=(replace(OF_R, visits=visits), OF_S))
+    return with_plan(visits=(OF_R.visits[0], Visit(*visit), OF_R.visits[2]))  # type: ignore[arg-type]
 
 
 NODE, ROBOT = ("graph", "nodes", 1), ("robots", 1)
@@ -110,16 +113,8 @@ SOLUTIONS: Sequence[tuple[Callable[[], Solution], tuple[str | int, ...], object]
     (lambda: with_visit("b", None, 2), (*VISIT, 1), None),
     (lambda: with_visit("b", 1, True), (*VISIT, 2), True),
     (lambda: with_visit(0.5, 1, 2), (*VISIT, 0), 0.5),
-    (
-        lambda: replace(SOLVED, plans=(replace(OF_R, robot=None), OF_S)),  # type: ignore[arg-type]
-        (*FIRST, "robot"),
-        None,
-    ),
-    (
-        lambda: replace(SOLVED, plans=(replace(OF_R, visits=[*OF_R.visits]), OF_S)),  # type: ignore[arg-type]
-        (*FIRST, "visits"),
-        None,
-    ),
+    (lambda: with_plan(robot=None), (*FIRST, "robot"), None),
+    (lambda: with_plan(visits=[*OF_R.visits]), (*FIRST, "visits"), None),
     (lambda: replace(SOLVED, plans=[*SOLVED.plans]), ("plans",), None),  # type: ignore[arg-type]
     (lambda: replace(SOLVED, order=("r", 1.5)), ("order", 1), 1.5),  # type: ignore[arg-type]
     (lambda: replace(SOLVED, unplanned=None), ("unplanned",), None),  # type: ignore[arg-type]
@@ -229,6 +224,7 @@ def test_an_instance_of_which_no_look_ups_can_be_made_is_refused() -> None:
 ENGINES = [carp_optimized, carp_reference]
 SAME = Neighbourhood()
 PAST = Plan("r", OF_R.visits[:2])
+TWICE = replace(SOLVED, plans=(OF_R, OF_R))
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -256,6 +252,7 @@ PAST = Plan("r", OF_R.visits[:2])
         (lambda engine: engine.retime(RIGHT, SOLVED, Trace(-1, ())), "document/shape", "$.now"),
         (lambda engine: engine.polish(RIGHT, SOLVED, iterations=True), "polish/options", "$.iterations"),
         (lambda engine: engine.polish(RIGHT, SOLVED, seconds=0), "polish/options", "$.seconds"),
+        (lambda engine: engine.polish(RIGHT, TWICE, iterations=1), "solution/covers", "$.plans[0]"),
     ],
 )
 def test_a_malformed_request_is_refused_like_its_op(
