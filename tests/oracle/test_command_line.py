@@ -17,9 +17,10 @@ SLOW_TO_LOAD = ("z3", "numba", "numpy", "networkx", "pysat", "hypothesis", "matp
 CARPROOF = Path(sys.executable).with_name("carproof")
 
 
-def test_help_names_every_command_and_fits_eighty_columns(carproof: Run) -> None:
+def test_help_which_no_arguments_ask_for_too_names_every_command_and_fits_eighty_columns(carproof: Run) -> None:
     outcome = carproof("--help")
     assert outcome.code == 0
+    assert carproof() == outcome
     assert all(f"\n  {name} " in outcome.stdout for name in (*COMMANDS, "experiment"))
     assert max(map(len, outcome.stdout.splitlines())) <= 80
 
@@ -39,10 +40,6 @@ def test_old_names_stand_for_the_new_ones(carproof: Run, old: str) -> None:
     assert outcome.code == 0
     assert outcome.stdout == carproof(*RENAMED[old], "--help").stdout
     assert f"carproof {now}" in outcome.stderr
-
-
-def test_without_arguments_the_help_is_shown(carproof: Run) -> None:
-    assert carproof() == carproof("--help")
 
 
 def test_a_shell_completes_commands_options_and_files(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -119,10 +119,10 @@ def test_a_bug_is_refused_by_its_rule_with_a_small_benchmark(
 
 
 @pytest.mark.usefixtures("elsewhere")
-def test_an_answer_in_no_format_is_a_protocol_error(process: Run) -> None:
-    report = report_of(process, "--examples", "0", "--", "cat", "{map}", "{scen}")
-    assert {failure["category"] for failure in report["failures"]} == {"protocol error"}
-    assert "the format must be named by --from" in report["failures"][0]["message"]
+@pytest.mark.parametrize(("program", "category"), [("cat", "protocol error"), ("false", "crash")])
+def test_a_program_that_writes_no_solution_has_failed(process: Run, program: str, category: str) -> None:
+    report = report_of(process, "--examples", "0", "--", program, "{map}", "{scen}")
+    assert {failure["category"] for failure in report["failures"]} == {category}
 
 
 def test_a_format_that_could_be_two_is_asked_for_before_any_case(process: Run, elsewhere: Path) -> None:
@@ -138,12 +138,6 @@ def test_a_program_that_never_writes_a_plan_does_not_conform(process: Run) -> No
     report = report_of(process, "--examples", "10", "--", "true", "{map}", "{scen}")
     assert (report["conforms"], report["failures"]) == (False, [])
     assert "[program/tries]" in report["shortfalls"][0]
-
-
-@pytest.mark.usefixtures("elsewhere")
-def test_a_program_that_ends_with_an_error_and_writes_nothing_has_crashed(process: Run) -> None:
-    report = report_of(process, "--examples", "0", "--", "false", "{map}", "{scen}")
-    assert {failure["category"] for failure in report["failures"]} == {"crash"}
 
 
 def best(instance: Instance) -> Solution:

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from tests.oracle.running import BEHIND_PLAN, EAST_PLAN, ONE_PLANNED, TWO, Run, save, solution
+from tests.oracle.running import BEHIND_PLAN, ONE_PLANNED, TWO, Run, save, solution
 
 FORBIDDING = {**TWO, "following": "forbidden"}
 APART = solution({"r1": [["a", 0, 2], ["b", 2, 3], ["c", 3, 4]], "r2": BEHIND_PLAN})
@@ -30,13 +30,6 @@ def test_commands_that_plan_keep_a_free_tick(command: str, carproof: Run) -> Non
     assert carproof("check forbidding.json plans.json").code == 0
     assert carproof("execution dependencies forbidding.json plans.json").code == 0
     assert carproof("execution simulate forbidding.json plans.json --driver order --delays 0.5").code == 0
-
-
-def test_plans_without_a_free_tick_are_wrong(carproof: Run) -> None:
-    save(close=solution({"r1": EAST_PLAN, "r2": BEHIND_PLAN}))
-    outcome = carproof("check forbidding.json close.json")
-    assert outcome.code == 1
-    assert outcome.stdout.startswith("[joint/following] ")
 
 
 def test_optima_and_gaps_keep_a_free_tick(carproof: Run) -> None:

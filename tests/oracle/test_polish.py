@@ -7,7 +7,7 @@ import msgspec
 import pytest
 from tests.oracle.running import TWO, TWO_PLANNED, Run, save, solution
 
-from carproof import check_update, polish, read_instance, read_solution, total_cost
+from carproof import polish, read_instance, read_solution, total_cost
 from carproof.engines import engine_named
 from carproof.protocol.ops.op import Session
 from carproof.protocol.server import respond
@@ -22,22 +22,6 @@ def _late(folder: Path) -> None:
     """Plans that are later than they must be."""
     del folder
     save(late=LATE)
-
-
-@pytest.mark.parametrize("engine", ["reference", "optimized"])
-def test_robots_under_way_keep_what_they_have_done(carproof: Run, engine: str) -> None:
-    assert carproof(f"polish town.json late.json --now 1 --engine {engine} -o better.json").code == 0
-    before, after = (read_solution(Path(name).read_bytes()) for name in ("late.json", "better.json"))
-    assert [visit.enter for visit in after.plans[0].visits] == [0, 1, 2]
-    assert carproof(f"polish town.json late.json --now 3 --engine {engine} -o better.json").code == 0
-    after = read_solution(Path("better.json").read_bytes())
-    assert [visit.enter for visit in after.plans[0].visits] == [0, 2, 3]
-    assert not check_update(before.plans, after.plans, 3)
-
-
-def test_after_tick_0_a_robot_without_a_plan_gets_none(carproof: Run) -> None:
-    outcome = carproof("polish town.json one.json --json --iterations 9 --now 1")
-    assert (outcome.code, json.loads(outcome.stdout)["unplanned"]) == (1, ["r2"])
 
 
 def test_the_gap_is_that_of_a_certificate_which_is_verified(carproof: Run) -> None:
