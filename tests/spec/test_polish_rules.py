@@ -138,20 +138,14 @@ def test_a_stay_is_in_the_way_from_the_first_tick_of_a_span_to_the_last(
 def test_robots_that_cross_a_resource_are_apart_by_ticks(plan: Plan, other: Plan) -> None:
     for visit in plan.visits:
         there = {each.enter for each in other.visits if each.resource == visit.resource}
-        nearest = (
-            next((ticks for ticks in count() if {visit.enter - ticks, visit.enter + ticks} & there), None)
-            if there
-            else None
-        )
-        assert ticks_apart(visit, other) == nearest
+        near = (ticks for ticks in count() if {visit.enter - ticks, visit.enter + ticks} & there)
+        assert ticks_apart(visit, other) == (next(near) if there else None)
 
 
 @FEWER
 @given(st.lists(st.fractions(0, 3, max_denominator=3), max_size=6))
 def test_near_robots_come_by_distance_and_equals_in_their_order(distances: list[Fraction]) -> None:
-    assert [(distances[place], place) for place in by_distance(distances)] == sorted(
-        zip(distances, count(), strict=False)
-    )
+    assert by_distance(distances) == sorted(range(len(distances)), key=lambda place: (distances[place], place))
 
 
 @FEWER

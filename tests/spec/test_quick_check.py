@@ -6,12 +6,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from msgspec import structs
-from tests.spec.making import PARKED, PARKING, SOLVED, VANISHING
+from tests.spec.making import PARKED, PARKING, SOLVED, VANISHING, instance_on, line, plan_of
 from tests.spec.strategies import SIZES, instances_with_plans
 
 import carp_optimized
 import carp_reference
-from carp_spec import Carp, Instance, Plan, Resource, ResourceGraph, Robot, Visit, judge, violations_of
+from carp_spec import Carp, Instance, Plan, Robot, Visit, judge, violations_of
 from carp_spec.execution.logs import judge_log
 from carp_spec.execution.traces import Trace
 from carp_spec.quick_check import LATEST, breaks_no_rule, is_large
@@ -71,9 +71,8 @@ def test_right_logs_pass_while_all_robots_are_there(planned: PlannedInstance, no
 
 
 def test_robots_that_meet_at_the_tick_of_the_log_do_not_pass() -> None:
-    graph = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),))
-    instance = Instance(graph, (Robot("r", "a", "b"), Robot("s", "b", "a")))
-    plans = Plan("r", (Visit("a", 0, 1), Visit("b", 1, None))), Plan("s", (Visit("b", 0, None),))
+    instance = instance_on(line("ab"), Robot("r", "a", "b"), Robot("s", "b", "a"))
+    plans = plan_of("r", ("a", 0, 1), ("b", 1, None)), plan_of("s", ("b", 0, None))
     assert not breaks_no_rule(instance, plans, 1)
 
 

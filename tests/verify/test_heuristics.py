@@ -4,12 +4,13 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from tests.optimum.test_branching import nothing
 from tests.profiles import draws
+from tests.spec.making import line
 from tests.verify.test_optimum import turned_ring
 
 from carp_optimum.sat.heuristics import plans_of_all
 from carp_optimum.sat.solver import TimeOver
 from carp_reference import plan
-from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, Solution, judge
+from carp_spec import Carp, Instance, Robot, Solution, judge
 from carproof.testing.strategies import Sizes, instances
 
 SMALL = Sizes(resources=6, robots=4, capacity=2, duration=3, release=3, pace=2)
@@ -55,9 +56,6 @@ def test_what_was_found_before_the_end_of_the_time_is_kept() -> None:
 
 
 def test_numbers_that_the_arrays_do_not_hold_are_planned_by_the_reference() -> None:
-    graph = ResourceGraph(
-        (Resource("a", duration=2**29), Resource("b", duration=2**29), Resource("c")), (("a", "b"), ("b", "c"))
-    )
     for release in (2**31, 0):
-        instance = Instance(graph, (Robot("r", "a", "c", release), Robot("s", "b", "c")))
+        instance = Instance(line("abc", a=2**29, b=2**29), (Robot("r", "a", "c", release), Robot("s", "b", "c")))
         assert plans_of_all(instance, [*instance.robot], nothing) is not None
