@@ -81,6 +81,13 @@ def test_exchanges_at_one_tick_come_in_the_order_of_the_resources() -> None:
     ]
 
 
+@pytest.mark.parametrize(("there", "back"), [("ax", "xa"), ("bb", "bb")], ids=["nowhere", "staying on"])
+def test_moves_to_nowhere_and_second_visits_are_no_exchange(there: str, back: str) -> None:
+    ends = zip(("r1", "r2"), (there, back), strict=True)
+    plans = [plan_of(robot, (way[0], 0, 1), (way[1], 1, 2)) for robot, way in ends]
+    assert list(exchanges_are_avoided(ROW, plans)) == []
+
+
 def told(instance: Instance, *plans: Plan) -> list[str]:
     """What the checker says of the plans together."""
     return [str(each) for each in violations_of(instance, plans) if each.rule.startswith("joint/")]
