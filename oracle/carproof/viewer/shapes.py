@@ -71,15 +71,7 @@ def svg_text(element: Element) -> str:
 
 def hatch_definition(picture: Element) -> None:
     """Define the hatching that marks violations, so that they differ without their colour."""
-    pattern = SubElement(
-        SubElement(picture, "defs"),
-        "pattern",
-        {
-            "id": "hatch",
-            "width": "6",
-            "height": "6",
-            "patternUnits": "userSpaceOnUse",
-            "patternTransform": "rotate(45)",
-        },
-    )
+    size = {"width": "6", "height": "6"}
+    turned = {"patternUnits": "userSpaceOnUse", "patternTransform": "rotate(45)"}
+    pattern = SubElement(SubElement(picture, "defs"), "pattern", {"id": "hatch", **size, **turned})
     SubElement(pattern, "rect", {"width": "2", "height": "6", **PAINT["hatch"]})
