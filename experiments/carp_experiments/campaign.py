@@ -59,7 +59,6 @@ def run_campaign(cases: Sequence[Case], store: Store, workers: Workers, advance:
 
 
 def _results(cases: Sequence[Case], workers: Workers) -> Generator[Result, None, None]:
-    """The results as they come."""
     import joblib  # noqa: PLC0415 - loads numpy
 
     if workers.backend == "dask":

@@ -313,7 +313,6 @@ class _Run:
 
 
 def _not_asked(ladder: Sequence[Rung], position: int, seconds: float) -> str:
-    """The large cases that were left out."""
     of_all, left = (Counter(rung.robots for rung in ladder[first:]) for first in (0, position))
     sizes = ", ".join(f"{left[robots]} of {of_all[robots]} of {robots} robots" for robots in SIZES if left[robots])
     return f"the {seconds:g} s for large cases were over; not asked: {sizes}"

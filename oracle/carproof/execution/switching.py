@@ -119,7 +119,6 @@ def _sequences(order: Order) -> Sequences:
 
 
 def _switched(order: Order, sequences: Sequences, pairs: Collection[Pair]) -> tuple[Dependency, ...]:
-    """The edges after the switch."""
     changed = {constraint: [*sequences[constraint]] for constraint, _, _ in pairs}
     for constraint, first, second in pairs:
         stays = changed[constraint]

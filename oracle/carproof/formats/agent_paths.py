@@ -26,7 +26,6 @@ RIGHT_PATHS = Code(
 
 
 def _pairs(text: str, robots: int, file: str) -> dict[int, list[Cell]]:
-    """The pairs of numbers of each agent."""
     agents: dict[int, list[Cell]] = {}
     for number, line in enumerate(text.split("\n"), start=1):
         packed, where = re.sub(r"[ \t\r]", "", line), f"{file}:{number}"

@@ -123,7 +123,6 @@ def _plain(value: Any) -> Any:  # noqa: ANN401 - whatever stands in a graph
 
 
 def _named(node: Any) -> Any:  # noqa: ANN401 - a node; if it is none, a rule of instances says so
-    """The resource of a node."""
     return ",".join(map(str, node)) if isinstance(node, tuple) else _plain(node)
 
 

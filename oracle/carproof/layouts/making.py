@@ -140,7 +140,6 @@ def _vehicles(layout: Layout, graph: ResourceGraph, settings: Settings) -> tuple
 
 
 def _requested(layout: Layout, data: bytes, file: str) -> Iterator[Robot]:
-    """The robots of a table."""
     seen: set[str] = set()
     for line, row in rows_of(RIGHT_SETTINGS.text(data, file), file, RIGHT_SETTINGS, COLUMNS, ("release",)):
         where = f"{file}:{line}"

@@ -92,7 +92,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
 
 def _show(document: ReleaseDocument) -> None:
-    """Print a line for each robot."""
     columns, rows = ["robot", "by the order, all together"], []
     if document.beyond:
         columns += ["alone", "but not", "because of"]

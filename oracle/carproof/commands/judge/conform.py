@@ -229,7 +229,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
 
 def _require_level(level: Level, one_shot: bool, classical: bool, executor: bool, kernel: bool) -> None:
-    """Refuse a level at which such a program is not judged."""
     judged, what = tuple(Level), "a program"
     if classical:
         judged, what = CLASSICAL_LEVELS, "a planner for MovingAI files"
@@ -291,7 +290,6 @@ def _origin(program: Sequence[str], level: str, one_shot: bool, executor: bool, 
 
 
 def _show(report: "Report", saved: Sequence[Path]) -> None:
-    """Print the results: counts, findings, and the verdict."""
     from carproof.conform.reporting.documents import RESULTS, counts  # noqa: PLC0415
     from carproof.conform.reporting.wording import details, verdict  # noqa: PLC0415
 

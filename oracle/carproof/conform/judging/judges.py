@@ -95,7 +95,6 @@ def _best(beside: Beside, robot: RobotId, followed: Plan | None = None, now: int
 def _against_best(
     instance: Instance, best: Plan | None, robot: RobotId, plan: Plan | None, level: Level
 ) -> Iterator[Finding]:
-    """Compare with the best plan."""
     if best is None:
         if plan is not None:
             raise RuntimeError(f"carproof says that robot {robot} has no plan, and {shown_plan(plan)} is one")

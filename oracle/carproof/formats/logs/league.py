@@ -64,7 +64,6 @@ def read(text: str, width: int, file: str) -> CellLog:
 
 
 def _walk(start: Cell, heading: int, actions: str) -> "npt.NDArray[np.int32]":
-    """The cells at each tick."""
     import numpy as np  # noqa: PLC0415 - slow to load
 
     done = np.frombuffer(actions.encode(), np.uint8)
