@@ -43,7 +43,7 @@ class Experiment:
     """An experiment. The case of an assignment and a map is the same in every profile with as many robots.
 
     `functions` names two without their endings: `_row` makes the row of a case, and `_report` a report of rows and the
-    number of robots, unless `reported` names another. They are loaded when needed, for numba is slow to load.
+    number of robots. They are loaded when needed, for numba is slow to load.
     """
 
     name: str
@@ -51,7 +51,6 @@ class Experiment:
     full: Profile
     quick: Profile
     functions: str
-    reported: str = ""
     places: int = 400
 
     def cases(self, profile: Profile) -> Sequence[MapCase]:
@@ -62,8 +61,7 @@ class Experiment:
 
     def report(self, rows: Iterable[Row], robots: int) -> ExperimentReport:
         """The report of rows."""
-        reported = self.reported or f"{self.functions}_report"
-        report: ExperimentReport = resolve_name(f"carp_experiments.{reported}")(rows, robots)
+        report: ExperimentReport = resolve_name(f"carp_experiments.{self.functions}_report")(rows, robots)
         return report
 
     def refuse(self, profile: Profile) -> None:
@@ -123,7 +121,6 @@ EXPERIMENTS = (
         Profile(100, 100, (10, FULL_MAP)),
         Profile(2, 30, (10, FULL_MAP)),
         "paper.conventions:conventions",
-        reported="paper.conventions_report:conventions_report",
     ),
     Experiment(
         "nearest",
@@ -131,7 +128,6 @@ EXPERIMENTS = (
         Profile(100, 100, (10, FULL_MAP)),
         Profile(2, 30, (10, FULL_MAP)),
         "paper.conventions:nearest",
-        reported="paper.conventions_report:conventions_report",
     ),
     Experiment(
         "remaining",
@@ -139,7 +135,6 @@ EXPERIMENTS = (
         Profile(100, 100, (10, FULL_MAP)),
         Profile(2, 30, (10, FULL_MAP)),
         "paper.conventions:remaining",
-        reported="paper.conventions_report:conventions_report",
     ),
     Experiment(
         "neighbours",

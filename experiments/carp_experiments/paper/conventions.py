@@ -16,6 +16,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from carp_experiments.paper import space_time
+from carp_experiments.paper.conventions_report import conventions_report
 from carp_experiments.paper.drawn_maps import SIDE, map_arrays
 from carp_experiments.paper.map_cases import MapCase
 from carp_experiments.paper.quality import ALGORITHMS
@@ -178,6 +179,9 @@ def remaining_row(case: MapCase) -> Row:
         if each.failure == "keep"
     }
     return {**row_under(REMAINING, case), "meetings": meetings}
+
+
+nearest_report = remaining_report = conventions_report
 
 
 def row_under(conventions: Sequence[Convention], case: MapCase) -> Row:
