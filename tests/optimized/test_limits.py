@@ -7,7 +7,7 @@ import pytest
 import carp_optimized
 import carp_reference
 from carp_optimized.state import room
-from carp_spec import Carp, Instance, Neighbourhood, Plan, Refusal, Resource, ResourceGraph, Robot, Visit
+from carp_spec import Carp, Instance, Neighbourhood, Plan, Refusal, Resource, ResourceGraph, Robot, TimeExpanded, Visit
 
 LARGEST = 2**30 - 1
 
@@ -53,6 +53,12 @@ def test_ticks_of_committed_plans_and_of_requests_are_refused_too() -> None:
         carp_optimized.query(instance, [plan], "r")
     with pytest.raises(Refusal):
         carp_optimized.query(instance, [], "r", now=LARGEST + 1)
+
+
+def test_a_planner_that_only_the_reference_has_is_refused() -> None:
+    with pytest.raises(Refusal) as refused:
+        carp_optimized.plan(two_cells(), TimeExpanded())
+    assert "reference" in refused.value.message
 
 
 @pytest.mark.parametrize("last", [2**29, 1])

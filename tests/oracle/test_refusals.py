@@ -189,6 +189,7 @@ REFUSED = (
     ("conform --one-shot --level exact -- cat {map} {scen}", "--level must be one of sound, complete, optimal"),
     ("conform --one-shot --level exact -- cat {instance}", "--level must be one of sound, complete-in"),
     ("conform --executor --level complete -- cat", "Of an executor --level must be one of sound, exact."),
+    ("conform --executor --kernel -- cat", "--executor can be combined with neither --one-shot nor --kernel."),
     ("conform --executor --one-shot -- cat", "--executor can be combined with neither --one-shot nor --kernel."),
     # sizes and times
     ("convert plant.xml --tick 0s", "--tick: it must be a number above 0"),

@@ -104,7 +104,7 @@ def following_report(rows: Iterable[Row], _robots: int) -> ExperimentReport:
     title = (
         "Means with 95 % intervals: robots without a plan with following allowed and forbidden; the excess of the "
         "total where it is forbidden, over the robots that have plans both ways; assignments with a rotation, "
-        " and those in which one stays; rotations removed, and the excess of the total by this"
+        "and those in which one stays; rotations removed, and the excess of the total by this"
     )
     cells: Mapping[str, Callable[[FollowingOf], object]] = {
         "place": lambda each: place_name(each.map),
