@@ -29,6 +29,8 @@ If LaCAM has plans, guides may take until `GUIDED` and LaCAM with them until `LA
 little. If nothing has found plans for all, LaCAM goes on until `LAST`, and what is left is for prioritized planning of
 as many as possible.
 """
+SAMPLES, EACH = 10, 16
+"""With guides, LaCAM tries so many next configurations if a search takes one of `EACH` parts of the time at most."""
 SURE = 64
 """After so many steps of LaCAM it is known how long a step takes."""
 MISSES = 8
@@ -59,17 +61,19 @@ def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
 
     Paths by LaCAM are more promising unless the others are much better.
     """
-    search = Search(crowd, seed)
+    search, began = Search(crowd, seed), timer.spent
     by_steps = _searched(search, STEPS, timer, GUIDING)
     if not by_steps and search.outcome == RUNNING and search.tried < STEPS and timer.goes_on(GUIDING):
         return [_as_many_in_order(crowd, timer, seed)]
+    took = timer.spent - began
+    samples = 1 + sum(EACH * count * took < timer.left() for count in range(2, SAMPLES + 1))
     in_order = _best_in_order(crowd, timer, by_steps, seed)
     has_all = bool(in_order.size.all())
     if has_all and _is_better(crowd, in_order, by_steps):
         return [in_order, *by_steps]
     until, last = (GUIDED, LATEST) if by_steps else (GUIDING, GUIDED)
     for guides in guides_of(crowd, lambda: timer.goes_on(until)):
-        found = _searched(Search(crowd, seed, guides), STEPS, timer, last)
+        found = _searched(Search(crowd, seed, guides, samples), STEPS, timer, last)
         if not found:
             break
         by_steps += found

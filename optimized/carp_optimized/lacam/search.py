@@ -2,8 +2,9 @@
 
 A configuration is the place of every robot at a tick. The search is depth-first over configurations, each with ever
 longer demands on its successor, which fix the place of one more robot at a time. Successors come from
-`carp_optimized.lacam.pibt`. So crowds are planned for which no order of robots works. Totals are far from the least;
-`carp_optimized.crowds.rounds` lowers them. Nothing here is trusted: the law judges the plans.
+`carp_optimized.lacam.pibt`; of several tries the one whose ways left have the least sum is taken (Okumura 2024). So
+crowds are planned for which no order of robots works. Totals are far from the least; `carp_optimized.crowds.rounds`
+lowers them. Nothing here is trusted: the law judges the plans.
 """
 
 from typing import NamedTuple
@@ -27,6 +28,8 @@ STEPS = 10_000
 """The search ends after this number of successors; most searches that succeed need a few hundred."""
 FOUND, FAILED, FULL, RUNNING = range(4)
 NODES, DEMANDS, DEPTH, TRIED = range(4)  # the counts
+ENDLESS = 1 << 40
+"""More than any sum of distances."""
 ROOM = 256
 """The configurations for which there is room at first."""
 
@@ -57,12 +60,14 @@ class Nodes(NamedTuple):
 
 
 class Lacam(NamedTuple):
-    """The whole search."""
+    """The whole search. `chosen` are the best next places of `samples` tries."""
 
     crowd: Crowd
     step: Step
     nodes: Nodes
     least: Ints
+    chosen: Ints
+    samples: int
 
 
 lacam_at = dereference(Lacam)
@@ -86,11 +91,12 @@ class Search:
 
     __slots__ = ("_native", "outcome", "paths")
 
-    def __init__(self, crowd: Crowd, seed: int = 0, guides: Guides | None = None) -> None:
-        """The crowd has been measured, and `can_begin`."""
+    def __init__(self, crowd: Crowd, seed: int = 0, guides: Guides | None = None, samples: int = 1) -> None:
+        """The crowd has been measured, and `can_begin`. The best of so many next configurations is taken."""
         self.outcome = RUNNING
         self.paths: Paths | None = None
-        self._native = Native(Lacam(crowd, no_step(crowd, seed, guides), _no_nodes(crowd, ROOM), ways_of(crowd)))
+        step, nodes = no_step(crowd, seed, guides), _no_nodes(crowd, ROOM)
+        self._native = Native(Lacam(crowd, step, nodes, ways_of(crowd), crowd.start.copy(), samples))
         _place_root(self._native.fields)
 
     @property
@@ -110,9 +116,9 @@ class Search:
         while self.outcome == RUNNING and nodes.counts[TRIED] < last:
             self.outcome = search(self._native, last - int(nodes.counts[TRIED]))
             if self.outcome == FULL:
-                crowd, step, _, least = self._native.fields
-                nodes = _enlarged(crowd, nodes)
-                self._native = Native(Lacam(crowd, step, nodes, least))
+                lacam = self._native.fields
+                nodes = _enlarged(lacam.crowd, nodes)
+                self._native = Native(lacam._replace(nodes=nodes))
                 self.outcome = RUNNING
         if self.outcome == FOUND:
             self.paths = _paths(nodes)
@@ -155,12 +161,11 @@ def _enlarged(crowd: Crowd, nodes: Nodes) -> Nodes:
 
 def _place_root(lacam: Lacam) -> None:
     """The configuration at tick 0; robots with the longest ways come first."""
-    crowd, step, nodes, distance = lacam
+    crowd, nodes, distance = lacam.crowd, lacam.nodes, lacam.least
     by_distance = np.argsort(-distance, kind="stable").astype(np.int32)
     present = by_distance if crowd.parks else by_distance[distance[by_distance] > 0]
     nodes.order[0, : present.size] = present
     nodes.present[0] = present.size
-    step.next[:] = crowd.start
     add_root(Native(lacam))
 
 
@@ -186,9 +191,9 @@ def _paths(nodes: Nodes) -> Paths:
 
 @entry
 def add_root(native: Native[Lacam]) -> None:
-    """Take the places of the step for the first configuration, whose order is there already."""
+    """Take the places chosen for the first configuration, whose order is there already."""
     lacam = lacam_at(native)
-    add_node(lacam, NONE, hash_of(lacam.step.next))
+    add_node(lacam, NONE, hash_of(lacam.chosen))
     lacam.nodes.stack[0] = 0
     lacam.nodes.counts[DEPTH] = 1
 
@@ -242,15 +247,33 @@ def try_successor(lacam: Lacam, node: int) -> None:
     if level < present:
         robot = int(order[level])
         demand_each(lacam, node, demand, robot)
-    begin(step, places, order, present)
-    if choose_all(lacam, node, demand):
-        hash = hash_of(step.next)
-        found = node_at(nodes, step.next, hash)
+    least = ENDLESS
+    for _ in range(lacam.samples if level == 0 else 1):
+        begin(step, places, order, present)
+        if choose_all(lacam, node, demand):
+            least = keep_nearer(lacam, least)
+        end(step, places, order, present)
+    if least < ENDLESS:
+        hash = hash_of(lacam.chosen)
+        found = node_at(nodes, lacam.chosen, hash)
         if found == NONE:
             found = add_node(lacam, node, hash)
         nodes.stack[int(nodes.counts[DEPTH])] = found
         nodes.counts[DEPTH] += 1
-    end(step, places, order, present)
+
+
+@compiled
+def keep_nearer(lacam: Lacam, least: int) -> int:
+    """Choose the places of the step if their sum of distances is less than `least`; the lesser of both."""
+    places = lacam.step.next
+    far = 0
+    for robot in range(places.size):
+        if places[robot] != GONE:
+            far += int(lacam.crowd.distance[robot][int(places[robot])])
+    if far < least:
+        for robot in range(places.size):
+            lacam.chosen[robot] = places[robot]
+    return min(far, least)
 
 
 @compiled
@@ -340,7 +363,7 @@ def add_node(lacam: Lacam, parent: int, hash: np.uint64) -> int:
     nodes.counts[NODES] += 1
     places = nodes.places[node]
     for robot in range(places.size):
-        places[robot] = lacam.step.next[robot]
+        places[robot] = lacam.chosen[robot]
     nodes.parent[node] = parent
     nodes.hash[node] = hash
     at = int(hash % np.uint64(nodes.bucket.size))

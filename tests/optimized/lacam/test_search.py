@@ -4,11 +4,13 @@ from dataclasses import replace
 
 import pytest
 from hypothesis import given
-from tests.optimized.crowds.measuring import on_grid
+from tests.optimized.crowds.measuring import measured, on_grid
 
 from carp_optimized import plan
 from carp_optimized.crowds.crowd import is_stepwise
-from carp_optimized.lacam.search import STEPS, plans_by_steps
+from carp_optimized.crowds.improving import total_of
+from carp_optimized.crowds.stays import solution_along
+from carp_optimized.lacam.search import STEPS, Search, plans_by_steps
 from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, Solution, judge
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 from carproof.testing.strategies import Sizes, instances
@@ -52,6 +54,20 @@ def test_two_robots_swap_at_a_far_pocket() -> None:
 @pytest.mark.parametrize("seed", range(8))
 def test_robots_on_a_tree_make_room_for_one_another(seed: int) -> None:
     assert keeps_the_law(on_grid(6, 10, "park", seed, map=0), steps=1000)
+
+
+def test_the_best_of_several_next_configurations_leads_to_shorter_plans() -> None:
+    instance = on_grid(20, 300)
+    crowd = measured(instance)
+
+    def total(samples: int) -> int:
+        search = Search(crowd, samples=samples)
+        search.go(STEPS)
+        assert search.paths is not None
+        assert judge(instance, solution_along(instance, instance.robots, search.paths)).valid
+        return total_of(search.paths)
+
+    assert 20 * total(10) < 19 * total(1)
 
 
 def test_robots_that_cannot_pass_get_no_plans() -> None:
