@@ -31,8 +31,8 @@ as many as possible.
 """
 SAMPLES, EACH = 10, 16
 """With guides, LaCAM tries so many next configurations if a search takes one of `EACH` parts of the time at most."""
-SURE = 64
-"""After so many steps of LaCAM it is known how long a step takes."""
+SURE, DOUBT = 64, 2
+"""After so many steps of LaCAM it is known how long a step takes, but for a factor of `DOUBT`."""
 MISSES = 8
 """Prioritized planning gives up when robots have found no path this often, on average."""
 HOPE, MANY = 8, 8
@@ -157,14 +157,14 @@ def _is_better(crowd: Crowd, in_order: Paths, by_steps: Sequence[Paths]) -> bool
 def _searched(search: Search, steps: int, timer: Clock, until: int) -> list[Paths]:
     """The paths of all robots by LaCAM, if they are found in that many steps and in time.
 
-    No paths end in fewer steps than the longest way has. If these take too long, the search is given up.
+    No paths end in fewer steps than the longest way has. If these take far too long, the search is given up.
     """
     first, began = search.tried, timer.spent
     last = min(first + steps, NO_LIMIT)
     while search.outcome == RUNNING and search.tried < last and timer.goes_on(until):
         search.go(8)
         done = search.tried - first
-        if done >= SURE and (timer.spent - began) * (search.longest - search.tried) > timer.left(LAST) * done:
+        if done >= SURE and (timer.spent - began) * (search.longest - search.tried) > DOUBT * timer.left(LAST) * done:
             break
     return [] if search.paths is None else [search.paths]
 

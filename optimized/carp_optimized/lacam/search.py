@@ -267,7 +267,7 @@ def keep_nearer(lacam: Lacam, least: int) -> int:
     """Choose the places of the step if their sum of distances is less than `least`; the lesser of both."""
     places = lacam.step.next
     far = 0
-    for robot in range(places.size):
+    for robot in range(places.size if lacam.samples > 1 else 0):
         if places[robot] != GONE:
             far += int(lacam.crowd.distance[robot][int(places[robot])])
     if far < least:

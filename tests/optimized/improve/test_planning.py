@@ -174,7 +174,7 @@ def test_lacam_is_given_up_where_the_steps_of_the_longest_way_take_too_long(monk
     clock, calls = Slow(), []
     go = clock.slowing(Search.go, 10)
     monkeypatch.setattr(Search, "go", lambda *given: calls.append(go(*given)))
-    found = plan_crowd(on_grid(100, 200), iterations=None, seconds=200, clock=clock)
+    found = plan_crowd(on_grid(140, 200), iterations=None, seconds=200, clock=clock)
     assert len(found.plans) == 200
     assert len(calls) == first_paths.SURE // 8
 
