@@ -5,7 +5,7 @@ from carp_optimized.jit.kinds import Ints, Longs
 from carp_optimized.jit.references import Native
 from carp_optimized.queries.guides import guide_of, guide_slot
 from carp_optimized.queries.over_stops import shortest_of
-from carp_optimized.queries.search import cost_alone, find_any_plan, find_plan, find_plan_only
+from carp_optimized.queries.search import cost_alone, find_any_plan, find_plan_by, find_plan_only
 from carp_optimized.queries.windows import plan_fits, reserve, withdraw
 from carp_optimized.state.arrays import NEVER, NONE, TOO_FAR, UNASKED, UNCHANGED, UNKNOWN, State
 from carp_optimized.state.natives import state_at
@@ -154,7 +154,7 @@ def repeat_query(native: Native[State], robot: int, times: int) -> int:
     records, visits, expansions = int(state.records.used[0]), int(state.records.used[1]), int(state.records.used[2])
     found = NONE
     for _ in range(times):
-        found = find_plan(state, robot, NONE, 0, NEVER)
+        found = find_plan_by(state, robot, NONE, 0, NEVER, NEVER)
         state.records.used[0] = records
         state.records.used[1] = visits
         state.records.used[2] = expansions

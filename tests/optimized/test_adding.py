@@ -17,7 +17,7 @@ from carp_optimized.fleet import PlannedFleet
 from carp_optimized.neighbourhood import adding as neighbourhood
 from carp_optimized.neighbourhood import answers, distances
 from carp_optimized.neighbourhood.distances import follow, nearest
-from carp_optimized.queries.search import find_plan, find_plan_alone
+from carp_optimized.queries.search import find_plan_alone, find_plan_by
 from carp_optimized.state.arrays import NEVER, NONE, Records, Work
 from carp_optimized.state.room import no_work
 from carp_spec import Neighbourhood, neighbourhood_rules
@@ -103,7 +103,7 @@ def test_a_plan_where_nothing_is_reserved_is_made_as_by_a_search(under_way: Flee
     robot = fleet.index(under_way.robot)
     state = fleet._empty.fields
     one = find_plan_alone(state, robot, under_way.now)
-    other = find_plan(state, robot, NONE, under_way.now, NEVER)
+    other = find_plan_by(state, robot, NONE, under_way.now, NEVER, NEVER)
     assert (one == NONE) == (other == NONE)
     if one != NONE:
         assert what_was_read(state.records, one) == what_was_read(state.records, other)

@@ -15,7 +15,7 @@ from carp_optimized.neighbourhood.replanning import (
     replan,
 )
 from carp_optimized.queries.over_stops import shortest_of
-from carp_optimized.queries.search import find_plan, find_plan_alone, find_plan_by
+from carp_optimized.queries.search import find_plan_alone, find_plan_by
 from carp_optimized.queries.windows import give_rank, plan_fits, reserve_but, withdraw, withdraw_but
 from carp_optimized.state.arrays import (
     LARGEST,
@@ -52,7 +52,10 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
     options = adding.options
     size = before.size
     robots = size + 1
-    shortest = find_plan_alone(empty, robot, now) if followed == NONE else find_plan(empty, robot, followed, now, NEVER)
+    if followed == NONE:
+        shortest = find_plan_alone(empty, robot, now)
+    else:
+        shortest = find_plan_by(empty, robot, followed, now, NEVER, NEVER)
     if shortest == NONE:
         return False
     rounds = min(begin(state, work, before, robot, shortest, now), options.m - 1)
@@ -144,7 +147,7 @@ def try_baseline(state: State, work: Work, size: int, shortest: int, now: int, s
         state.counters[UNCHANGED] += 1
         plan = shortest
     else:
-        plan = find_plan(state, new, int(work.before[new]), now, NEVER)
+        plan = find_plan_by(state, new, int(work.before[new]), now, NEVER, NEVER)
     work.alone[0] = plan
     if plan == NONE:
         return NO_LIMIT

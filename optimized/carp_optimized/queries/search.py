@@ -39,12 +39,6 @@ FEWEST_LOOKS = 64  # at windows, when it is
 
 
 @compiled
-def find_plan(state: State, robot: int, before: int, now: int, behind: int) -> int:
-    """The record of the robot's plan, whatever its arrival: see `find_plan_by`."""
-    return find_plan_by(state, robot, before, now, behind, NEVER)
-
-
-@compiled
 def find_plan_by(state: State, robot: int, before: int, now: int, behind: int, latest: int) -> int:
     """The record of the robot's plan that arrives by `latest`, with what the query has read: see `find_any_plan`."""
     return find_any_plan(state, robot, before, now, behind, latest, True)
@@ -142,7 +136,7 @@ def cost_alone(empty: State, robot: int, before: int, now: int) -> int:
 
 @compiled
 def find_plan_alone(empty: State, robot: int, now: int) -> int:
-    """The record of the robot's plan where nothing is reserved, or `NONE`, as `find_plan` makes it.
+    """The record of the robot's plan where nothing is reserved, or `NONE`, as `find_plan_by` makes it.
 
     There A* expands just the path. As h is exact, each resource leads to one of the same f and a smaller h. Of these,
     entered at one tick, the one of the smallest toll has the smallest key. Entries made before have no smaller f, and
@@ -150,7 +144,7 @@ def find_plan_alone(empty: State, robot: int, now: int) -> int:
     than what follows. A robot that starts at its goal, or is too far from it, is left to the search.
     """
     if has_stops(empty, robot):
-        return find_plan(empty, robot, NONE, now, NEVER)
+        return find_plan_by(empty, robot, NONE, now, NEVER, NEVER)
     graph = empty.graph
     windows = empty.windows
     search = empty.search
@@ -162,7 +156,7 @@ def find_plan_alone(empty: State, robot: int, now: int) -> int:
     toll = toll_of(empty, slot, resource)
     ready = max(enter + pace * int(graph.duration[resource]), now)
     if resource == goal or toll < 0 or ready + (toll >> 32) > LARGEST:
-        return find_plan(empty, robot, NONE, now, NEVER)
+        return find_plan_by(empty, robot, NONE, now, NEVER, NEVER)
     empty.counters[ASKED] += 1
     search.generation[0] += 1
     label = int(search.generation[0]) << 32
