@@ -17,7 +17,7 @@ from carp_optimized.recording import enlarged, read_plan, write_plan
 from carp_optimized.state import encoding, limits, room
 from carp_optimized.state.arrays import LARGEST, NONE, UNASKED, UNKNOWN, Adding, Options, Polish, Records, State
 from carp_optimized.state.records import keep_records
-from carp_spec import FixedPaths, Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Shuffled
+from carp_spec import FixedPaths, Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Shuffled, Solution
 from carp_spec.documents.solutions import PlanColumns
 from carp_spec.inputs.values import require_instance
 from carp_spec.limits import refuse_stops
@@ -212,6 +212,11 @@ class PlannedFleet:
         records = np.array([self.record(plan) for plan in plans], np.int32)
         robots = np.array([self._index[plan.robot] for plan in plans], np.int32)
         self._reserve(robots, records)
+
+    def commit_solution(self, solution: Solution) -> None:
+        """Take over the plans of a solution, in its planning order."""
+        plans = {plan.robot: plan for plan in solution.plans}
+        self.commit([plans[robot] for robot in solution.order])
 
     def find(self, robot: int, before: Plan | None, now: int) -> Plan | None:
         """The plan of a robot that is not in the fleet, which has followed the plan `before` until now."""

@@ -149,9 +149,8 @@ def add(
     If no plan is found, the robot is unplanned and all other plans stay as they are.
     """
     require_addition(instance, solution, robot, now, options)
-    by_robot = {each.robot: each for each in solution.plans}
     fleet = _fleet(instance, reuse)
-    fleet.commit([by_robot[each] for each in solution.order])
+    fleet.commit_solution(solution)
     fleet.add(fleet.index(robot), now, options)
     order = tuple(each.robot for each in fleet.plans)
     missing = {*solution.unplanned, robot}.difference(order)
@@ -220,9 +219,8 @@ def polish_while(
     advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
 ) -> Solution:
     """The same for sound input, as long as it goes on, up to the last round, if there is one."""
-    by_robot = {each.robot: each for each in whole.plans}
     fleet = _fleet(instance)
-    fleet.commit([by_robot[each] for each in whole.order])
+    fleet.commit_solution(whole)
     polish_fleet(fleet, goes_on, last, seed, now, advance)
     return known(instance, Solution.of(instance, fleet.plans))
 

@@ -37,8 +37,7 @@ def _plan_again(fleet: PlannedFleet, goes_on: Callable[[], bool], now: int) -> N
 
 def settled(instance: Instance, solution: Solution, goes_on: Callable[[], bool] = lambda: True) -> Solution:
     """The same for a solution, which breaks no rule."""
-    plans = {each.robot: each for each in solution.plans}
     fleet = PlannedFleet(instance)
-    fleet.commit([plans[each] for each in solution.order])
+    fleet.commit_solution(solution)
     settle(fleet, goes_on)
     return Solution.of(instance, fleet.plans)

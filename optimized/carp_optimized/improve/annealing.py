@@ -93,9 +93,8 @@ def anneal(
         with suppress(Refusal):
             solution = repair(instance, solution, lambda: REPAIR * (clock() - started) < seconds)
     whole = sound_solution(instance, solution)
-    by_robot = {each.robot: each for each in whole.plans}
     fleet = PlannedFleet(instance)
-    fleet.commit([by_robot[each] for each in whole.order])
+    fleet.commit_solution(whole)
     polishing = fleet.polishing(seed, now)
     least = int(polishing.fields.least.sum())
     played = fleet.polish(polishing, 0)
