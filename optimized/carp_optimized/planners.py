@@ -230,7 +230,7 @@ def polish_fleet(
     goes_on: Callable[[], bool],
     last: int | None,
     seed: int,
-    now: int = 0,
+    now: int,
     advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
 ) -> None:
     """The same for the plans that a fleet has."""

@@ -117,7 +117,7 @@ class Improving:
         self.rounds.stays.size[:] = 0
         return self.begin(goes_on)
 
-    def play(self, rounds: int, work: int, chance: int = 0, *, turning: bool = False) -> int:
+    def play(self, rounds: int, work: int, chance: int, *, turning: bool = False) -> int:
         """Play that many rounds, or as many as take that much work; how many. Equally early paths are tried in turn."""
         self.rounds.counts[CHANCE] = min(chance, SURE - 1)
         self.rounds.counts[TURNING] = turning

@@ -42,7 +42,7 @@ class Step(NamedTuple):
     stream: Numbers
 
 
-def no_step(crowd: Crowd, seed: int, guides: Guides | None = None) -> Step:
+def no_step(crowd: Crowd, seed: int, guides: Guides | None) -> Step:
     """The arrays of a step."""
     robots, resources = crowd.start.size, crowd.queue.size
     choices = int(np.diff(crowd.first).max(initial=0)) + 1

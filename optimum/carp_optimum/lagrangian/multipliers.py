@@ -10,14 +10,14 @@ from carp_optimized.jit.kinds import Ints, IntTable, LongTable
 from carp_optimized.state.arrays import NONE, Graph
 from carp_optimum.lagrangian.state import Cells, Charges, Market, Prices, Requests, Scratch, Usage, Ways
 from carp_spec import Instance, Refusal
-from carp_verify.bound.rules import LARGEST_TABLE, size_fits
+from carp_verify.bound.rules import size_fits
 
 LARGEST_ARRAY = 100_000_000  # entries of a table of counts
 LARGEST_PRICED = 15_000_000  # entries of a table of prices, of which there are about a dozen
 N = TypeVar("N", bound=np.generic)
 
 
-def refuse_table(path: str, what: str, entries: int, most: int = LARGEST_TABLE) -> None:
+def refuse_table(path: str, what: str, entries: int, most: int) -> None:
     """Raise `Refusal` if a table would be too large."""
     if not size_fits(entries, most):
         message = f"{what} must be at most {most}, the limit, and would be {entries}"
