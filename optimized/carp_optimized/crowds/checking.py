@@ -8,7 +8,7 @@ import numpy as np
 
 from carp_optimized.crowds.crowd import Crowd
 from carp_optimized.crowds.stays import Paths
-from carp_optimized.jit.kinds import Longs
+from carp_optimized.jit.kinds import Flags, Longs
 from carp_optimized.state.arrays import NEVER
 
 TICKS = 25
@@ -47,7 +47,7 @@ def _are_apart(place: Longs, enter: Longs, leave: Longs) -> bool:
     return bool((leave[order[:-1]] <= enter[order[1:]])[same].all())
 
 
-def _are_moves(crowd: Crowd, place: Longs, leave: Longs, is_last: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> bool:
+def _are_moves(crowd: Crowd, place: Longs, leave: Longs, is_last: Flags) -> bool:
     """Whether each visit is followed by one that a move leads to, and no two moves at a tick swap places.
 
     Of stays that do not overlap, no two begin in one place at one tick. So moves between the same two places at the

@@ -7,9 +7,8 @@ what a step takes; the distances are the least ticks from each resource to the g
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from carp_optimized.jit.kinds import Ints, ShortTable
+from carp_optimized.jit.kinds import Flags, Ints, ShortTable
 from carp_optimized.jit.references import dereference
 from carp_optimized.state.encoding import encode_graph
 from carp_spec import Instance
@@ -73,7 +72,7 @@ def ways_of(crowd: Crowd) -> Ints:
     return crowd.distance[np.arange(crowd.start.size), crowd.start].astype(np.int32)
 
 
-def are_apart(crowd: Crowd) -> npt.NDArray[np.bool_]:
+def are_apart(crowd: Crowd) -> Flags:
     """Of each robot, whether none before it starts in its place, or parks in its goal."""
     found = np.zeros(crowd.start.size, np.bool_)
     found[np.unique(crowd.start, return_index=True)[1]] = True
@@ -94,7 +93,7 @@ def first(crowd: Crowd, robots: int) -> Crowd:
     return crowd._replace(start=crowd.start[:robots], goal=crowd.goal[:robots], distance=crowd.distance[:robots])
 
 
-def only(crowd: Crowd, robots: npt.NDArray[np.bool_]) -> Crowd:
+def only(crowd: Crowd, robots: Flags) -> Crowd:
     """Some of the robots of a crowd."""
     if robots.all():
         return crowd

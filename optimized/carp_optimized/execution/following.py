@@ -8,14 +8,12 @@ from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
-from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
 from carp_optimized.execution.trace_check import follows
 from carp_optimized.jit.compiling import entry
-from carp_optimized.jit.kinds import Longs
+from carp_optimized.jit.kinds import Flags, Longs
 from carp_optimized.state.limits import refuse_tick, refuse_what_is_too_large
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
 from carp_spec.execution.dependencies import stays_by_constraint
@@ -25,7 +23,6 @@ from carp_spec.limits import goals_stand_alone
 from carp_spec.plan_rules import least_stays
 from carp_spec.requests import require_trace
 
-Flags: TypeAlias = npt.NDArray[np.bool_]
 FOR_EVER = 2**62
 NOWHERE = -1
 

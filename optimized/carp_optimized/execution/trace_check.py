@@ -6,9 +6,8 @@ It shares nothing with the retiming that relies on it. Where it finds a breach, 
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
-from carp_optimized.jit.kinds import Longs
+from carp_optimized.jit.kinds import Flags, Longs
 from carp_spec import Instance, Plan, Solution
 from carp_spec.execution.traces import Trace
 from carp_spec.limits import goals_stand_alone
@@ -110,5 +109,5 @@ def _in_order(leaving: tuple[Longs, Longs, Longs], entering: tuple[Longs, Longs,
     ranked = np.lexsort((leaving[1], before))
     latest = np.maximum.accumulate(before[ranked] + leaving[2][ranked])
     place = np.searchsorted(before[ranked] + leaving[1][ranked] + gap, after + entering[1], side="right") - 1
-    is_behind: npt.NDArray[np.bool_] = (place >= 0) & (before[ranked][place] == after)
+    is_behind: Flags = (place >= 0) & (before[ranked][place] == after)
     return not (is_behind & (latest[place] - after + gap > entering[2])).any()

@@ -1,4 +1,4 @@
-"""The kinds of arrays that compiled functions take: whole numbers, in one dimension or two."""
+"""The kinds of arrays: whole numbers, in one dimension or two, which compiled functions take, and truths."""
 
 from typing import Annotated, TypeAlias
 
@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 Ints: TypeAlias = npt.NDArray[np.int32]
 Longs: TypeAlias = npt.NDArray[np.int64]
+Flags: TypeAlias = npt.NDArray[np.bool_]
 Numbers: TypeAlias = npt.NDArray[np.uint64]
 IntTable: TypeAlias = Annotated[npt.NDArray[np.int32], 2]
 ShortTable: TypeAlias = Annotated[npt.NDArray[np.int16], 2]

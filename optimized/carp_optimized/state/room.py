@@ -1,9 +1,8 @@
 """Arrays of the sizes that a state, a query, an addition and a polish need, with nothing in them yet."""
 
 import numpy as np
-import numpy.typing as npt
 
-from carp_optimized.jit.kinds import Ints, Longs
+from carp_optimized.jit.kinds import Flags, Ints, Longs
 from carp_optimized.state.arrays import (
     ANSWERS,
     BLOCK,
@@ -61,7 +60,7 @@ def no_guides(resources: int, goals: Ints, paces: Ints, has_ranks: bool, stops: 
     )
 
 
-def empty_rows(has_row: npt.NDArray[np.bool_], filled: bool, places: int) -> Rows:
+def empty_rows(has_row: Flags, filled: bool, places: int) -> Rows:
     """Rows of the resources that have one, filled with one interval for ever or empty; the first block is no row's."""
     rows = int(has_row.sum())
     offset = _ints(has_row.size)

@@ -13,10 +13,9 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from carp_optimized.crowds.crowd import is_stepwise
-from carp_optimized.jit.kinds import Ints, Longs
+from carp_optimized.jit.kinds import Flags, Ints, Longs
 from carp_optimized.jit.references import Native
 from carp_optimized.state.arrays import NONE
 from carp_optimized.state.encoding import encode_graph
@@ -109,16 +108,16 @@ class Branching:
         bound = bound_part(self._native, self.least - 1, FIRST_STEPS, FIRST_AIM)
         return min(-(-bound // SCALE), self.least)
 
-    def _make_part(self, kept: npt.NDArray[np.bool_]) -> None:
+    def _make_part(self, kept: Flags) -> None:
         """Make the arrays for these nodes, by robot, tick and resource."""
         self._part = _part_of(self.instance, self._goals, kept)
         self._native = Native(self._part)
 
-    def _kept(self) -> npt.NDArray[np.bool_]:
+    def _kept(self) -> Flags:
         """The nodes that are alive, by robot, tick and resource, up to the last tick of any."""
         at = self._part.nodes.at
         alive = (at != NONE) & (self._part.alive[at] > 0)
-        kept: npt.NDArray[np.bool_] = alive.reshape(len(at), -1, len(self.instance.graph.resources))
+        kept: Flags = alive.reshape(len(at), -1, len(self.instance.graph.resources))
         return kept[:, : int(np.flatnonzero(kept.any(axis=(0, 2)))[-1]) + 1]
 
     def _bounded(self, steps: int, aim: int) -> list[_Open]:
@@ -199,7 +198,7 @@ class Branching:
         return Plan(self.instance.robots[robot].id, tuple(visits))
 
 
-def _nodes_within(instance: Instance, most: int) -> npt.NDArray[np.bool_]:
+def _nodes_within(instance: Instance, most: int) -> Flags:
     """The nodes of each robot if the others have no delay and all cost at most this, by robot, tick and resource."""
     before = predecessors(instance)
     index = instance.graph.index
@@ -216,7 +215,7 @@ def _nodes_within(instance: Instance, most: int) -> npt.NDArray[np.bool_]:
     return kept
 
 
-def _part_of(instance: Instance, goals: Ints, kept: npt.NDArray[np.bool_]) -> Part:
+def _part_of(instance: Instance, goals: Ints, kept: Flags) -> Part:
     """The arrays for these nodes, all alive."""
     robots, ticks, resources = kept.shape
     graph = encode_graph(instance)

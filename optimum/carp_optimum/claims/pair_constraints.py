@@ -15,9 +15,8 @@ from heapq import heappop, heappush
 from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
-from carp_optimized.jit.kinds import IntTable, Longs
+from carp_optimized.jit.kinds import Flags, IntTable, Longs
 from carp_optimized.jit.references import Native
 from carp_optimized.state.arrays import NONE, Graph
 from carp_optimum.claims.pair_states import Meeting, Side, find_claim, find_meetings
@@ -69,7 +68,7 @@ def fewest(sights: list[Sight], is_enough: Callable[[list[Sight]], bool]) -> lis
     return sights
 
 
-def member_of(side: Side, spots: npt.NDArray[np.bool_], tick: int) -> Member:
+def member_of(side: Side, spots: Flags, tick: int) -> Member:
     """The robot, seen at the tick in the spots."""
     places = tuple(side.resource[np.flatnonzero(spots[:-1])].tolist())
     return Member(side.robot, tick if spots[-1] else -1, tick, places)

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from carp_optimized.jit.kinds import Longs
+from carp_optimized.jit.kinds import Flags, Longs
 from carp_spec import Instance
 from carp_spec.documents.bounds import DeadlinesDocument
 from carp_verify.bound.cuts import formula_of_deadlines
@@ -60,7 +59,7 @@ class Flat(NamedTuple):
     robot: Longs
     arrival: Longs
     seen: Longs
-    inside: npt.NDArray[np.bool_]
+    inside: Flags
     place: Longs
     row: Longs
     group_of_place: Longs
