@@ -102,7 +102,7 @@ def test_a_plan_where_nothing_is_reserved_is_made_as_by_a_search(under_way: Flee
     fleet = PlannedFleet(under_way.instance)
     robot = fleet.index(under_way.robot)
     state = fleet._empty.fields
-    one = find_plan_alone(state, robot, under_way.now)
+    one = find_plan_alone(state, robot, NONE, under_way.now)
     other = find_plan_by(state, robot, NONE, under_way.now, NEVER, NEVER)
     assert (one == NONE) == (other == NONE)
     if one != NONE:

@@ -52,10 +52,7 @@ def add_robot(  # noqa: C901 - Algorithm 1 from its first line to its last
     options = adding.options
     size = before.size
     robots = size + 1
-    if followed == NONE:
-        shortest = find_plan_alone(empty, robot, now)
-    else:
-        shortest = find_plan_by(empty, robot, followed, now, NEVER, NEVER)
+    shortest = find_plan_alone(empty, robot, followed, now)
     if shortest == NONE:
         return False
     rounds = min(begin(state, work, before, robot, shortest, now), options.m - 1)

@@ -135,16 +135,17 @@ def cost_alone(empty: State, robot: int, before: int, now: int) -> int:
 
 
 @compiled
-def find_plan_alone(empty: State, robot: int, now: int) -> int:
+def find_plan_alone(empty: State, robot: int, followed: int, now: int) -> int:
     """The record of the robot's plan where nothing is reserved, or `NONE`, as `find_plan_by` makes it.
 
     There A* expands just the path. As h is exact, each resource leads to one of the same f and a smaller h. Of these,
     entered at one tick, the one of the smallest toll has the smallest key. Entries made before have no smaller f, and
     where it is the same, no smaller h than the resource of the path that was expanded in their place, so a larger one
-    than what follows. A robot that starts at its goal, or is too far from it, is left to the search.
+    than what follows. A robot that has `followed` a plan, starts at its goal, or is too far from it, is left to the
+    search.
     """
-    if has_stops(empty, robot):
-        return find_plan_by(empty, robot, NONE, now, NEVER, NEVER)
+    if followed != NONE or has_stops(empty, robot):
+        return find_plan_by(empty, robot, followed, now, NEVER, NEVER)
     graph = empty.graph
     windows = empty.windows
     search = empty.search
