@@ -122,7 +122,7 @@ paper-recomputed: install
 texts: install kernel
 	nice $(BIN)/carproof experiment texts --store texts.sqlite
 
-generated: install
+generated: compiled
 	$(BIN)/python -m carp_spec.documents.schema
 	$(BIN)/python -m tests.oracle.test_readme
 	$(BIN)/python -m tests.vectors.writing
