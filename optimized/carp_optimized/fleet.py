@@ -180,8 +180,8 @@ class PlannedFleet:
     ) -> bool:
         """Plan again, as `add` does, a robot that has other stops than `before`, and has followed the plan until now.
 
-        If it finds no plan, all is as before. What queries have read may stay: a robot with stops has it not used, and
-        once it has vanished, so has its plan before, which left no later.
+        If it finds no plan, all is as before. What queries have noted may stay: for a robot with stops it is not
+        used, and once the robot has vanished, its plan before has ended too, as that left no later.
         """
         index, order = self._index[robot.id], self._order
         self.withdraw([index])

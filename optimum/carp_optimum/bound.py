@@ -28,7 +28,7 @@ SCALE = 1 << 16
 FIRST_AIM, NEXT_AIM, FINAL_AIM = 10, 50, 1024
 """Parts of the best bound: the largest aims at the beginning, after new claims, and when all claims are proved."""
 LARGE_AIM, LARGE_FIRST = SCALE << 4, 100
-"""A first aim above this many parts of a tick is this part of the best bound instead, but no less than that."""
+"""A first aim above `LARGE_AIM` is one of `LARGE_FIRST` parts of the bound instead, but no less than `LARGE_AIM`."""
 ROUGH_AIM = SCALE >> 4
 LARGE = 16384  # parts of the best bound: the last aim before new claims, where that is more than the rough one
 FINE_AIM = SCALE >> 10

@@ -26,11 +26,11 @@ from carp_spec import Instance, Refusal, Solution
 from carp_spec.inputs.options import require_polish_options
 from carp_spec.requests import require_tick, sound_solution
 
-CYCLES, CYCLES_OF_LUCK = 8, 16
-LUCK = 2
-"""Luck decides where the delays, times this, are more than the shortest paths."""
+CYCLES, CYCLES_IF_DELAYED = 8, 16
+MUCH = 2
+"""Robots wait much where the delays, times this, are more than the shortest paths: results then vary between cycles."""
 COOLER = 4
-"""If luck decides, delays are large, and raises are smaller shares of them by this."""
+"""There raises are smaller shares of the delays by this."""
 ENDING, LEAST_ENDING, MOST_ENDING = 4, 32, 8
 """At the end, plans are settled, which takes up to about as long as so many rounds for each robot.
 
@@ -100,8 +100,8 @@ def anneal(
     played = fleet.polish(polishing, 0)
     given = plans = fleet.plans
     best = before = own = fleet.worth
-    luck = (best[1] - least) * LUCK > least
-    cycles = CYCLES_OF_LUCK if luck else CYCLES
+    is_delayed = (best[1] - least) * MUCH > least
+    cycles = CYCLES_IF_DELAYED if is_delayed else CYCLES
     current = 0
     from_given = True
     rounds = rounds_between_looks(fleet)
@@ -111,13 +111,13 @@ def anneal(
     while (spent := int(PARTS * (clock() - started) / (seconds - ending))) < PARTS:
         cycle, gone = divmod(cycles * spent, PARTS)
         if cycle > current:
-            from_given = luck and played >= ENOUGH * len(instance.robots) and from_given == (best < before)
+            from_given = is_delayed and played >= ENOUGH * len(instance.robots) and from_given == (best < before)
             if from_given or fleet.worth > best:
                 fleet.clear()
                 fleet.commit(given if from_given else plans)
             current, before, own = cycle, best, fleet.worth
         expected = PARTS * played // max(spent, 1)
-        heated = (HEAT if from_given else REHEAT) * max(own[1] - least, 0) // (COOLER if luck else 1)
+        heated = (HEAT if from_given else REHEAT) * max(own[1] - least, 0) // (COOLER if is_delayed else 1)
         polishing.fields.counts[CHANCE] = chance(heated, len(instance.robots), expected, PARTS - gone, power=1)
         batch = fleet.polish(polishing, rounds)
         played += batch

@@ -100,7 +100,7 @@ def _first_plans(instance: Instance, spent: Callable[[], float], seconds: float 
 
 
 def nearest_first(fleet: PlannedFleet) -> list[int]:
-    """The robots by their shortest ways, or about so if their distances would be measured twice for it."""
+    """The robots, nearest first; by estimates where not all guides fit, as these would be made twice."""
     if fleet.keeps_all_guides:
         ways = np.array([fleet.ticks_to_goal(robot) for robot in range(len(fleet.instance.robots))])
     else:

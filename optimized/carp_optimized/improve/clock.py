@@ -22,7 +22,7 @@ class Clock:
     """The seconds that each visit takes at the end."""
     reserved: float = 0.0
     begun: float = 0.0
-    """When those began that share the rest of the time."""
+    """When the phases began that share the rest of the time by eighths."""
 
     @property
     def spent(self) -> float:

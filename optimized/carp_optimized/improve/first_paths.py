@@ -1,9 +1,9 @@
 """First paths of a crowd: by LaCAM, and by prioritized planning in several orders.
 
 With the shortest way first, robots that arrive early park early, and those that come later go around them. Where that
-makes jams, passes in other orders follow, else less greedy ones. Who soon finds no path takes one on which it meets few
-others, and those are planned again. If that is not much better than LaCAM, LaCAM follows guides too. Where nothing
-ends, as many robots as possible are planned one after the other.
+makes jams, passes in other orders follow, else less greedy ones. A robot that does not find a path soon takes one on
+which it meets few others, and those are planned again. If that is not much better than LaCAM, LaCAM follows guides too.
+Where nothing ends, as many robots as possible are planned one after the other.
 """
 
 from collections.abc import Iterator, Sequence
@@ -40,7 +40,7 @@ HOPE, MANY = 8, 8
 SOME, PATIENCE = 64, 3
 """If a pass has missed at most one of `SOME` robots, so many times its time is for these."""
 EFFORT = 1000
-"""The gaps that a query may look at before the robot takes a way through others: who goes far around comes late.
+"""The gaps that a query may look at before the robot takes a way through others: a path far around arrives late.
 
 In larger crowds it may look at all, as ways through others take longer there.
 """

@@ -3,8 +3,8 @@
 CARP lets a robot pass through, wait in or end at the start of another that is planned later, and may so leave that one
 no way out. Here each start is held by the robot that stands there, for ever, until its turn comes. A robot that stands
 where another ends is planned before that one. Where robots vanish, and ways lead past the starts, each can then wait at
-its start until those before it have gone. Who stand in a circle, each where the next one ends, need luck: one of them
-finds another's plan at its start. So circles are planned first.
+its start until those before it have gone. Robots that stand in a circle, each where the next one ends, may still fail:
+one of them finds another's plan at its start. So circles are planned first.
 """
 
 from collections import defaultdict

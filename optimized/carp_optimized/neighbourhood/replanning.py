@@ -137,9 +137,8 @@ def could_use_freed(state: State, record: int, behind: int) -> bool:
     for k in range(first, last + 1):
         resource = int(records.expanded[k])
         is_early = freed.near_earliest[resource] - reach < records.until[k]
-        if is_early & (
-            records.ready[k] < freed.near_latest[resource]
-        ):  # no branch for each: half would be mispredicted
+        is_late = records.ready[k] < freed.near_latest[resource]
+        if is_early & is_late:  # one branch for both, of which half would be mispredicted
             if freed.mark[resource] == mark:
                 if state.parks and k < last and resource == records.expanded[last]:
                     return True

@@ -231,8 +231,8 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
     those of the whole map if the goal is crossed late, would be expanded in vain. Where the plan's record does not note
     what the search reads, `carp_optimized.queries.ends` looks for such an end now and then. In the same way
     `carp_optimized.queries.ways_back` looks whether there is a plan at all; where it finds that there is none,
-    `expansions[0]` is 0, as not all is known that this depends on. Who notes it and looks for plans by a tick asks why
-    there is none, so nobody looks then.
+    `expansions[0]` is 0, as not all is known that this depends on. A noted query for plans by a tick is asked why there
+    is none, so it does not look.
     The best of the windows reached last waits outside the heap, for it is often the next. Windows between which there
     are only robots behind are one: from `window`, by which it is known, to `tail`.
     """

@@ -14,7 +14,7 @@ NONE = -1  # no resource, no record, no slot
 GROUPED = 0  # the capacity of a resource of groups: those of its constraints are elsewhere
 UNKNOWN = -1  # the number of expansions of a plan that no query of the fleet has made
 
-SEVERAL = -2  # sources
+SEVERAL = -2  # the source of stays that came from several resources
 BLOCK = 8  # windows are looked at in blocks
 MOST_GATHERED = 1024  # windows at the end of a query
 

@@ -38,11 +38,12 @@ PATIENCE = 35
 ENOUGH, LEAST_ENOUGH = 32, 4096
 """Parts of the aim, and of the best bound: patience begins again where both are gained.
 
-On a spanning tree the bound rises slowly and long, in steps that are small beside the aim.
+On a spanning tree the bound converges slowly, in steps that are small beside the aim.
 """
 OVERSHOT, LEAST_PARTS = 4, 8192
-"""A first step that loses more than this part of the aim shows that the aim is too high: then this part is aimed for.
-No less than the second part of the bound is.
+"""A first step that loses more than one of `OVERSHOT` parts of the aim shows that the aim is too high.
+
+Then that part is aimed for, but no less than one of `LEAST_PARTS` parts of the bound.
 
 On a large map robots have many ways that are as short, and prices that are much too high chase them from one to others.
 """
