@@ -17,7 +17,7 @@ from carp_spec.neighbourhood_rules import distance
 from carp_spec.permutations import splitmix64
 from carp_spec.requests import require_tick, sound_solution
 
-Plans = Mapping[RobotId, Plan]
+ByRobot = Mapping[RobotId, Plan]
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Polish:
     """The data of all rounds; `alone` has the plans on the empty graph."""
 
     problem: Problem
-    alone: Plans
+    alone: ByRobot
     stream: Iterator[int]
 
 
@@ -55,7 +55,7 @@ def polish(  # noqa: PLR0913 - how long, how, and when
     able = [robot.id for robot in instance.robots if now == 0 or robot.id in by_robot]
     alone = {robot: plan for robot in able if (plan := find_plan(problem, (), robot)) is not None}
     polishing = Polish(problem, alone, splitmix64(seed))
-    plans: Plans = {robot: by_robot[robot] for robot in whole.order}
+    plans: ByRobot = {robot: by_robot[robot] for robot in whole.order}
     turn = 0
     while turn != last and (seconds is None or perf_counter() - started < seconds):
         better = _round(polishing, plans, turn)
@@ -67,7 +67,7 @@ def polish(  # noqa: PLR0913 - how long, how, and when
     return known(instance, Solution.of(instance, plans.values()))
 
 
-def _round(polishing: Polish, plans: Plans, turn: int) -> Plans | None:
+def _round(polishing: Polish, plans: ByRobot, turn: int) -> ByRobot | None:
     """The plans after one round; `None` if there is nothing to improve."""
     instance, alone, stream = polishing.problem.instance, polishing.alone, polishing.stream
     everyone = [robot.id for robot in instance.robots if robot.id in alone]
@@ -86,7 +86,7 @@ def _round(polishing: Polish, plans: Plans, turn: int) -> Plans | None:
     return changed if rules.is_kept(_worth(instance, plans), _worth(instance, changed)) else plans
 
 
-def _candidates(polishing: Polish, plans: Plans, kind: rules.Kind, pivot: RobotId) -> list[RobotId]:
+def _candidates(polishing: Polish, plans: ByRobot, kind: rules.Kind, pivot: RobotId) -> list[RobotId]:
     """The robots related to the pivot, in the order in which they are removed."""
     instance = polishing.problem.instance
     others = [plans[robot.id] for robot in instance.robots if robot.id in plans and robot.id != pivot]
@@ -104,7 +104,7 @@ def _candidates(polishing: Polish, plans: Plans, kind: rules.Kind, pivot: RobotI
     return rules.drawn(in_way, len(in_way), polishing.stream)
 
 
-def _replan(problem: Problem, plans: Plans, members: Sequence[RobotId]) -> Plans:
+def _replan(problem: Problem, plans: ByRobot, members: Sequence[RobotId]) -> ByRobot:
     """The plans with those of the members made again, in this order."""
     changed = {robot: plan for robot, plan in plans.items() if robot not in members}
     for robot in members:
@@ -114,6 +114,6 @@ def _replan(problem: Problem, plans: Plans, members: Sequence[RobotId]) -> Plans
     return changed
 
 
-def _worth(instance: Instance, plans: Plans) -> tuple[int, int]:
+def _worth(instance: Instance, plans: ByRobot) -> tuple[int, int]:
     """Fewer unplanned robots are better, then a smaller total."""
     return (len(instance.robots) - len(plans), total_cost(instance, tuple(plans.values())))
