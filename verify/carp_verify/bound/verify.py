@@ -14,7 +14,7 @@ kernel's theorem is `accepted_bound_is_below_every_solution`.
 
 - A price of a resource r at a tick t is paid by all who are in r at t: at most the capacity of r, by `joint/capacity`.
 - A price of a group at a tick is paid by all who are in one of its resources at the tick: at most the capacity of the
-  group, by `joint/group`. Who is in a resource pays the prices of all its groups.
+  group, by `joint/group`. A robot in a resource pays the prices of all its groups.
 - An exchange price of (r, s) at t is paid by all who move from r to s or from s to r at t, and by all who are in r both
   just before t and at t. No more of them than the capacity of r: by `joint/exchange` nobody makes one of the moves;
   those who make the other are in r just before t, or at t, together with those who stay.

@@ -3,9 +3,9 @@
 Why the bound holds: take any plan of the robot that breaks no rule, alone or together with the plans of the others.
 Follow it from the start, which is where the robot is at the tick `now`. As long as t + potential is before the bound,
 the window that the plan enters at t has a label no later than t: from the start or a label, every window that can be
-entered has one, and who is ready earlier can enter every window as early. The plan cannot end at such a label, so it
-comes to a window at which t + potential has reached the bound. From there on that sum never falls, as the potential
-grows along no move by more than the robot needs, and at the goal it is the arrival.
+entered has one, and a robot that is ready earlier can enter every window at least as early. The plan cannot end at such
+a label, so it comes to a window at which t + potential has reached the bound. From there on that sum never falls, as
+the potential grows along no move by more than the robot needs, and at the goal it is the arrival.
 
 A robot with several stops has labels and a potential for each number of stops served. Serving a stop leads from one to
 the next within a window; t is then the tick from which the robot may leave, less the duration.
