@@ -10,6 +10,7 @@ from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, print_document, read_instance_file
 from carproof.command_line.options import json_option, limit_option, listed
 from carproof.command_line.tables import print_line, print_table
+from carproof.engines import warm
 from carproof.extras import require
 
 if TYPE_CHECKING:
@@ -35,11 +36,12 @@ def command(instance: str, limit: int, as_json: bool) -> Answer:
     Exit codes: 0 the optimum is found, 1 the robots cannot all be planned, 2 bad input, 3 undecided within the limit.
     """
     require("pysat")
-    from carp_verify.optimum.unsolvable import describe  # noqa: PLC0415 - loads the planners
-    from carproof.api.searching import optimality_gap  # noqa: PLC0415
+    from carp_optimum.gap import PLANNERS, gap  # noqa: PLC0415 - loads the planners
+    from carp_verify.optimum.unsolvable import describe  # noqa: PLC0415
 
     problem = read_instance_file(instance)
-    measured = optimality_gap(problem, limit=limit)
+    warm()
+    measured = gap(problem, PLANNERS, limit)
     best = measured.optimum
     if as_json:
         print_document(write(gap_document(measured)))
