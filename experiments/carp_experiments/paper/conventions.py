@@ -181,7 +181,7 @@ def remaining_row(case: MapCase) -> Row:
     return {**row_under(REMAINING, case), "meetings": meetings}
 
 
-nearest_report = remaining_report = conventions_report
+nearest_report = remaining_report = conventions_report  # looked up by these names
 
 
 def row_under(conventions: Sequence[Convention], case: MapCase) -> Row:

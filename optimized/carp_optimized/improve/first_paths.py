@@ -3,7 +3,7 @@
 With the shortest way first, robots that arrive early park early, and those that come later go around them. Where that
 makes jams, passes in other orders follow, else less greedy ones. A robot that does not find a path soon takes one on
 which it meets few others, and those are planned again. If that is not much better than LaCAM, LaCAM follows guides too.
-Where nothing ends, as many robots as possible are planned one after the other.
+Where nothing ends, or LaCAM would take far too long, as many robots as possible are planned one after the other.
 """
 
 from collections.abc import Iterator, Sequence
@@ -63,7 +63,8 @@ def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
     """
     search, began = Search(crowd, seed), timer.spent
     by_steps = _searched(search, STEPS, timer, GUIDING)
-    if not by_steps and search.outcome == RUNNING and search.tried < STEPS and timer.goes_on(GUIDING):
+    is_given_up = search.outcome == RUNNING and search.tried < STEPS and timer.goes_on(GUIDING)
+    if is_given_up:
         return [_as_many_in_order(crowd, timer, seed)]
     took = timer.spent - began
     samples = 1 + sum(EACH * count * took < timer.left() for count in range(2, SAMPLES + 1))

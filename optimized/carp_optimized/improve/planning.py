@@ -31,7 +31,7 @@ NEAREST = 2 / 3
 LOADING = 4 * PART
 """The robots after which it is decided: the machine code may have to be loaded first."""
 SAMPLE, SAMPLES, SLOWER = 5000, 4, 2
-"""The least time counts that so many visits take to make; checking and making all takes this many times as long."""
+"""The least time counts that so many visits take to make; checking and making all takes at most this many times it."""
 
 
 @dataclass(frozen=True, slots=True)

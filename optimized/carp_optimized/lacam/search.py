@@ -264,7 +264,10 @@ def try_successor(lacam: Lacam, node: int) -> None:
 
 @compiled
 def keep_nearer(lacam: Lacam, least: int) -> int:
-    """Choose the places of the step if their sum of distances is less than `least`; the lesser of both."""
+    """Choose the places of the step if their sum of distances is less than `least`; the lesser of both.
+
+    Where there is one try, there is nothing to compare.
+    """
     places = lacam.step.next
     far = 0
     for robot in range(places.size if lacam.samples > 1 else 0):

@@ -138,7 +138,7 @@ def could_use_freed(state: State, record: int, behind: int) -> bool:
         resource = int(records.expanded[k])
         is_early = freed.near_earliest[resource] - reach < records.until[k]
         is_late = records.ready[k] < freed.near_latest[resource]
-        if is_early & is_late:  # one branch for both, of which half would be mispredicted
+        if is_early & is_late:  # one branch for both: of a branch for each, half would be mispredicted
             if freed.mark[resource] == mark:
                 if state.parks and k < last and resource == records.expanded[last]:
                     return True
