@@ -175,6 +175,40 @@ def test_robots_that_are_late_make_others_wait_and_keep_what_was_done() -> None:
     assert fleet.advance(9).left == ("x", "y")
 
 
+def test_a_trace_keeps_what_traces_before_it_told() -> None:
+    fleet = Fleet(row())
+    fleet.trace(Trace(2, (Plan("x", (Visit("b", 0, 1), Visit("c", 1, None))),)))
+    fleet.trace(Trace(2, (Plan("y", (Visit("a", 0, 1), Visit("b", 1, None))),)))
+    fleet.add(Robot("z", "g", "h", release=2))
+    known = fleet.solution
+    for visits in (
+        (Visit("b", 0, None),),
+        (Visit("b", 0, 2), Visit("c", 2, None)),
+        (Visit("b", 0, 1), Visit("c", 1, 2), Visit("d", 2, None)),
+    ):
+        with pytest.raises(Refusal) as refusal:
+            fleet.trace(Trace(4, (Plan("z", (Visit("g", 2, None),)), Plan("x", visits))))
+        assert (refusal.value.rule, refusal.value.path) == ("fleet/now", "$.plans[1]")
+        assert fleet.solution == known
+    at_last = Plan("x", (Visit("b", 0, 1), Visit("c", 1, 4), Visit("d", 4, None)))
+    assert not check_update(known.plans, fleet.trace(Trace(4, (at_last,))).plans, 2)
+
+
+def test_what_one_trace_told_of_a_robot_holds_for_those_that_were_ahead_of_it() -> None:
+    fleet = Fleet(row())
+    fleet.trace(Trace(2, (Plan("y", (Visit("a", 0, 1), Visit("b", 1, 2), Visit("c", 2, None))),)))
+    with pytest.raises(Refusal) as refusal:
+        fleet.trace(Trace(2, (Plan("x", (Visit("b", 0, None),)),)))
+    assert (refusal.value.rule, refusal.value.path) == ("fleet/now", "$.plans")
+
+
+def test_news_that_make_another_robot_appear_late_name_no_plan() -> None:
+    fleet = Fleet(replace(lane(), robots=(Robot("x", "b", "f"), Robot("y", "b", "a", release=2))))
+    with pytest.raises(Refusal) as refusal:
+        fleet.trace(Trace(3, (Plan("x", (Visit("b", 0, None),)),)))
+    assert (refusal.value.rule, refusal.value.path) == ("plan/start", "$.plans")
+
+
 def test_who_was_told_to_stand_somewhere_has_not_left_by_then() -> None:
     fleet = Fleet(lane(capacity=2))
     fleet.add(Robot("r", "a", "g"))

@@ -1,7 +1,7 @@
 """A fleet in memory: news goes in, and the plans that changed come out."""
 
 from collections.abc import Container, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from time import perf_counter
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -35,7 +35,8 @@ MOST_STOPS = 64
 MOST_VISITS = 4_000_000
 NOT_BACK = Code(
     "fleet/now",
-    "News for a fleet have no earlier tick than those before, and a robot to add is released no earlier than its news.",
+    "News for a fleet have no earlier tick than those before, and a robot to add is released no earlier than its news. "
+    "A trace keeps what traces before it told of the robots that they named.",
     DESIGN,
 )
 OWN_ROBOTS = Code(
@@ -78,7 +79,8 @@ class _Known:
     """What a fleet knows: robots in the order of their arrival, their plans, and how many came so far.
 
     `empty` is the instance without robots; `places` are the numbers of the robots in planning order, and `ids` the ids
-    by number. `numbers` say how many came before each robot. `told` is the tick of the last trace, -1 without one.
+    by number. `numbers` say how many came before each robot. `told` is the tick of the last trace, -1 without one, and
+    `heard` that of the last trace which named a robot.
     """
 
     empty: Instance
@@ -90,6 +92,7 @@ class _Known:
     numbers: Mapping[RobotId, int]
     count: int
     told: int = -1
+    heard: Mapping[RobotId, int] = field(default_factory=dict)
 
     def from_tick(self, now: int) -> int:
         """The tick from which plans may change at the tick now: what a trace told of its tick has happened."""
@@ -274,7 +277,8 @@ class Fleet:
 
         Robots that the trace does not name have done what was planned, later only where they wait for others in the
         planned order. Nobody moves otherwise at that tick any more: other news of it changes plans from the next on.
-        Raises `Refusal` for a tick that has passed, unknown robots, and a trace that does not follow the plans.
+        Raises `Refusal` for a tick that has passed, unknown robots, a trace that does not follow the plans, one that
+        contradicts those before it, and one by which a robot appears late or, with `vanish`, leaves its goal late.
         """
         require_shape(trace, Trace)
         now = self._tick(trace.now)
@@ -289,10 +293,19 @@ class Fleet:
         told = {plan.robot for plan in trace.plans}
         others = tuple(plan for plan in held_up(instance, solution, trace).plans if plan.robot not in told)
         whole = Trace(now, (*trace.plans, *until(Trace(now, others), now).plans))
-        after = retime(instance, solution, whole)
+        try:
+            after = retime(instance, solution, whole)
+            self._require_heard(whole)
+        except Refusal as refusal:
+            if refusal.path not in {f"$.plans[{place}]" for place in range(len(trace.plans), len(whole.plans))}:
+                raise
+            raise Refusal(refusal.kind, "$.plans", refusal.rule, refusal.message) from refusal
         core = self._taken()
         core.replan([plan for plan in after.plans if plan != self._known.plans[plan.robot].plan], after.order)
-        return self._take_over(core, now, audit, told=after.plans)
+        change = self._take_over(core, now, audit, told=after.plans)
+        named = dict.fromkeys(told & self._known.robots.keys(), now)
+        self._known = replace(self._known, heard={**self._known.heard, **named})
+        return change
 
     def polish(
         self, *, iterations: int | None = None, seconds: float | None = None, seed: int = 0, audit: bool = False
@@ -342,6 +355,19 @@ class Fleet:
                 raise Refusal("request", f"{path}.id", OWN_ROBOTS.id, message)
             _require_time(robot, now, path)
 
+    def _require_heard(self, whole: Trace) -> None:
+        """Raise `Refusal` where a trace of all robots contradicts an earlier one that named the robot."""
+        for number, plan in enumerate(whole.plans):
+            heard = self._known.heard.get(plan.robot, -1)
+            both = Trace(heard, (self._known.plans[plan.robot].plan, plan))
+            before, again = (each.visits for each in until(both, heard).plans)
+            for old, new in zip(before, again, strict=False):  # who has gone less far has not left the last visit
+                if old != new:
+                    left = "not left it" if old.leave is None else f"left it at {old.leave}"
+                    had = f"had entered {old.resource} at {old.enter} and {left}"
+                    message = f"a trace has told that by {heard} robot {plan.robot} {had}"
+                    raise Refusal("request", f"$.plans[{number}]", NOT_BACK.id, message)
+
     def _require_little(self, path: str, stops: int) -> None:
         if stops > MOST_STOPS:
             message = (
@@ -386,8 +412,9 @@ class Fleet:
         for id in (*left, *(each for each in unplanned if each in come)):
             del robots[id], numbers[id]
             plans.pop(id, None)
+        heard = {id: tick for id, tick in known.heard.items() if id in robots}
         last = known.told if told is None else now
-        after = _Known(known.empty, now, robots, plans, *core.places, numbers, known.count + len(come), last)
+        after = _Known(known.empty, now, robots, plans, *core.places, numbers, known.count + len(come), last, heard)
         found = _audited(known.solution.plans if told is None else told, after, changed) if audit else None
         self._known, self._core = after, core
         return Change(now, changed, tuple(unplanned), left, found)
