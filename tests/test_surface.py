@@ -3,14 +3,18 @@
 `python -m tests.test_surface` adds what is new. A line leaves the file by hand alone.
 """
 
+import inspect
 import json
 import re
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 import click
 import pytest
 
+import carproof as public
 from carp_spec.documents.schema import FOLDER
 from carproof.entry.cli import carproof
 from carproof.protocol.ops import OPS
@@ -18,6 +22,7 @@ from carproof.rules import ALL_RULES
 
 ROOT = Path(__file__).parent.parent
 SURFACE = Path(__file__).with_name("surface.txt")
+MODULES = ("carproof.formats", "carproof.generate", "carproof.testing.strategies")
 FORMAT = re.compile(r'"(carproof-[a-z]+/\d+)"')
 
 
@@ -45,10 +50,24 @@ def formats() -> Iterator[str]:
             yield from (f"field {name}.{field}" for field in definition.get("properties", ()))
 
 
+def names(module: ModuleType) -> Iterator[str]:
+    """Every public name of a module, with the parameters of functions, and the fields and methods of classes."""
+    for name in module.__all__:
+        value = getattr(module, name)
+        yield f"python {module.__name__}.{name}"
+        if inspect.isfunction(value):
+            yield from (f"python {module.__name__}.{name}({each})" for each in inspect.signature(value).parameters)
+        if inspect.isclass(value):
+            members = {*vars(value), *getattr(value, "__dataclass_fields__", ())}
+            yield from (f"python {module.__name__}.{name}.{each}" for each in members if not each.startswith("_"))
+
+
 def surface() -> set[str]:
     """Whatever there is now, a line each."""
     ops = (f"op {name}" for name in OPS)
-    return {*commands(carproof), *formats(), *ops, *(f"rule {rule.id}" for rule in ALL_RULES)}
+    modules = (public, *map(import_module, MODULES))
+    python = (line for module in modules for line in names(module))
+    return {*commands(carproof), *formats(), *ops, *python, *(f"rule {rule.id}" for rule in ALL_RULES)}
 
 
 def published() -> set[str]:
@@ -66,6 +85,8 @@ def test_nothing_published_is_missing() -> None:
         "field PlanDocument.visits",
         "format carproof-bound/1",
         "op query",
+        "python carproof.plan(instance)",
+        "python carproof.Verdict.violations",
         "rule plan/move",
     ],
 )
