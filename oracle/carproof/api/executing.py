@@ -11,7 +11,7 @@ from carp_spec.shapes import require_each
 from carp_verify.release.rules import Grant
 from carproof.execution.delays import Delay
 from carproof.execution.releasing import MOST_STATES, GrantsVerdict, Released, Releasing
-from carproof.execution.simulation import DRIVERS, Driver, Execution, delays_are_right
+from carproof.execution.simulation import DRIVERS, Driver, Execution, delays_are_right, require_delays
 from carproof.execution.simulation import execute as executed
 from carproof.requests import deadline
 
@@ -27,10 +27,7 @@ def execute(instance: Instance, solution: Solution, driver: Driver, delays: Sequ
         message = f"there is no driver {driver!r}; the drivers are {', '.join(DRIVERS)}"
         raise Refusal("option", "$.driver", delays_are_right.id, message)
     require_each(delays, Delay, "$.delays")
-    if not delays_are_right(sound, delays):
-        message = "each delay must name a planned robot, the position of a visit, and ticks above 0"
-        raise Refusal("option", "$.delays", delays_are_right.id, message)
-    return executed(instance, sound, driver, tuple(delays))
+    return executed(instance, sound, driver, require_delays(sound, delays, "option"))
 
 
 def release(

@@ -14,8 +14,8 @@ from carproof.execution.releasing import Answer, GrantsVerdict, Released
 class BeyondDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What one robot may be granted while the others get nothing.
 
-    `next` is the first resource that it may not have, null at the end of its plan; `answer` is that for it: unsafe or
-    undecided, and `robots` those in the way.
+    `next` is the first resource that it may not have, null at the end of its plan, and for a robot that is not
+    released yet, which may have nothing. `answer` is that for it: unsafe or undecided, and `robots` those in the way.
     """
 
     robot: RobotId

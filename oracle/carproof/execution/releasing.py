@@ -58,7 +58,7 @@ class Beyond:
     """What one robot may be granted while the others get nothing.
 
     `next` is the first resource that it may not have, with the answer for it and the robots in the way; `None` at the
-    end of its plan.
+    end of its plan, and for a robot that is not released yet, which may have nothing.
     """
 
     grant: Grant

@@ -1,5 +1,6 @@
 """Executions of solutions: delays, drivers of robots, and results."""
 
+from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass
 from typing import Literal, TypeAlias, get_args
@@ -12,6 +13,7 @@ from carp_spec.documents.fields import all_converted
 from carp_spec.execution.dependencies import Node, shortest_cycle
 from carp_spec.execution.traces import Trace
 from carp_spec.permutations import splitmix64
+from carp_spec.refusal import RefusalKind
 from carp_spec.rule import DESIGN, rule
 from carproof.execution.delays import Delay, executed, in_order, on_the_clock, planned, slack, smallest_collision, stuck
 from carproof.execution.switching import switching
@@ -42,14 +44,20 @@ def read_delays(data: bytes, solution: Solution) -> tuple[Delay, ...]:
     except msgspec.DecodeError as error:
         message = f"delays must be a list of [robot, visit, ticks]: {error}"
         raise Refusal("document", "$", delays_are_right.id, message) from error
-    delays = tuple(Delay(*each) for each in entries)
-    for place, delay in enumerate(delays):
-        if not delays_are_right(solution, [delay]):
-            message = f"the delay must be of a visit that is planned, for at least a tick, not {[*entries[place]]}"
-            raise Refusal("document", f"$[{place}]", delays_are_right.id, message)
+    return require_delays(solution, [Delay(*each) for each in entries], "document", "$")
+
+
+def require_delays(
+    solution: Solution, delays: Sequence[Delay], kind: RefusalKind, path: str = "$.delays"
+) -> tuple[Delay, ...]:
+    """The delays; raises `Refusal` for the first that is not right."""
     if not delays_are_right(solution, delays):
-        raise Refusal("document", "$", delays_are_right.id, "no visit may be delayed twice")
-    return delays
+        firsts = range(len(delays))
+        place = bisect_left(firsts, True, key=lambda last: not delays_are_right(solution, delays[: last + 1]))
+        wrong = [*astuple(delays[place])]
+        message = f"the delay must be of another visit that is planned, for at least a tick, not {wrong}"
+        raise Refusal(kind, f"{path}[{place}]", delays_are_right.id, message)
+    return tuple(delays)
 
 
 def random_delays(solution: Solution, share: int, most: int, seed: int) -> tuple[Delay, ...]:
@@ -91,8 +99,9 @@ class Execution:
     """The result of a driver with a solution.
 
     `followed` is the solution whose order it kept, switches included; after switches a plan may begin later than its
-    release, which `plan/start` does not allow. `late` has, for each robot that arrived, the ticks by which it was later
-    than planned, below 0 if it was earlier.
+    release, which `plan/start` does not allow. `collisions` break `joint/capacity`, `joint/group` or `joint/exchange`;
+    robots that follow each other where that is forbidden do not collide. `late` has, for each robot that arrived, the
+    ticks by which it was later than planned, below 0 if it was earlier.
     """
 
     driver: Driver

@@ -63,7 +63,11 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     robot's last with a chance of 0.05 by 1 to 3 ticks; a file has a list of [robot, visit, ticks], visits counted from
     0.
 
-    Mean and worst count the ticks by which robots arrive later than planned.
+    Mean and worst count the ticks by which robots arrive later than planned. Collisions are of too many robots in a
+    resource or a group, and of robots that exchange places; where following is forbidden, following is none.
+
+    After switches a plan of --followed may begin later than its release, which breaks plan/start; the trace is then one
+    of SOLUTION no more.
 
     Exit codes: 0 nobody collides or stands for ever, 1 somebody does, 2 bad input.
     """

@@ -6,7 +6,7 @@ from typing import TypeAlias
 import msgspec
 
 from carp_reference.execution import order_of
-from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Visit
+from carp_spec import Instance, ResourceId, RobotId, Solution, Visit
 from carp_spec.documents.grants import GrantDocument
 from carp_spec.documents.solutions import SolutionDocument, TraceDocument, solution_document, trace_document
 from carp_spec.documents.verdicts import VerdictDocument, verdict_document
@@ -26,7 +26,7 @@ from carproof.execution.release_documents import (
     grants_verdict_document,
     released_document,
 )
-from carproof.execution.simulation import DependenciesDocument, Driver, delays_are_right, dependencies_document
+from carproof.execution.simulation import DependenciesDocument, Driver, dependencies_document, require_delays
 from carproof.execution.simulation import execute as executed
 from carproof.execution.untangling import untangle as untangled
 from carproof.requests import deadline, inside, sound_within
@@ -211,9 +211,4 @@ def check_grants(
 
 
 def _delays(solution: Solution, delays: tuple[DelayFields, ...]) -> tuple[Delay, ...]:
-    """The delays of a request; raises `Refusal` if they are not right."""
-    found = tuple(Delay(*delay) for delay in delays)
-    if not delays_are_right(solution, found):
-        message = "each delay must be of another visit that is planned, for at least a tick"
-        raise Refusal("request", "$.delays", delays_are_right.id, message)
-    return found
+    return require_delays(solution, [Delay(*delay) for delay in delays], "request")
