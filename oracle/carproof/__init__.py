@@ -8,9 +8,9 @@
 It has the model (`Instance`, `ResourceGraph`, `Resource`, `Robot`, `Stop`, `Solution`, `Plan`, `Visit`) and its
 documents (`read_...`, `write_...`); the checkers (`check`, `check_trace`, `audit`, `conforms`); the planners (`plan`,
 `plan_within`, `query`, `add`, `assign`, `polish`) with their options (`Carp`, `Neighbourhood`, ...); bounds and optima
-(`bound`, `optimum`, `optimality_gap`, `verify_...`); executions (`execute`) and pictures (`view`). `carproof.formats`
-reads and writes other tools' formats, `carproof.generate` makes instances, and `carproof.testing.strategies` draws them
-for hypothesis.
+(`bound`, `optimum`, `optimality_gap`, `verify_...`); executions (`execute`, `drive`, `retime`, ...) and
+pictures (`view`). `carproof.formats` reads and writes other tools' formats, `carproof.generate` makes instances, and
+`carproof.testing.strategies` draws them for hypothesis.
 
 The imports below are the one list of public names. Type checkers read them; at run time they are not executed, so that
 importing this page costs nothing: a name is loaded from its module when it is first used.
@@ -86,8 +86,12 @@ if TYPE_CHECKING:
     from carproof.api.documents import write_bound as write_bound
     from carproof.api.documents import write_query_certificate as write_query_certificate
     from carproof.api.executing import check_grants as check_grants
+    from carproof.api.executing import drive as drive
     from carproof.api.executing import execute as execute
+    from carproof.api.executing import give_way as give_way
     from carproof.api.executing import release as release
+    from carproof.api.executing import retime as retime
+    from carproof.api.executing import untangle as untangle
     from carproof.api.fleet import Change as Change
     from carproof.api.fleet import Fleet as Fleet
     from carproof.api.judging import audit as audit
@@ -105,10 +109,12 @@ if TYPE_CHECKING:
     from carproof.conform.python import conforms as conforms
     from carproof.conform.run import Report as Report
     from carproof.execution.delays import Delay as Delay
+    from carproof.execution.giving_way import GivenWay as GivenWay
     from carproof.execution.releasing import GrantsVerdict as GrantsVerdict
     from carproof.execution.releasing import Released as Released
     from carproof.execution.simulation import Driver as Driver
     from carproof.execution.simulation import Execution as Execution
+    from carproof.execution.untangling import Untangled as Untangled
     from carproof.formats import MovingAIFiles as MovingAIFiles
     from carproof.formats import graph_of as graph_of
     from carproof.formats import instance_from_array as instance_from_array

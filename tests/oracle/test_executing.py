@@ -10,9 +10,10 @@ from tests.oracle.running import Document, Run, line, save, solution, town
 from tests.oracle.viewing import SVG, picture_of
 from tests.profiles import draws
 
+import carproof
 from carp_spec import judge
 from carp_spec.execution.execution_rules import is_acyclic
-from carproof import Delay, read_instance, read_solution
+from carproof import Delay, drive, give_way, read_instance, read_solution, read_trace, retime
 from carproof.engines import engine_named
 from carproof.execution.simulation import execute
 from carproof.execution.untangling import untangle
@@ -147,3 +148,15 @@ def test_nobody_switches_to_park_in_the_way() -> None:
     plans = {"r0": [["a", 0, 1], ["b", 1, 2], ["c", 2, None]], "r1": [["d", 0, 2], ["b", 2, None]]}
     late = execute(instance, read_solution(line(**solution(plans))), "switching", (Delay("r0", 0, 5),))
     assert (late.switches, late.collisions, late.late) == (0, (), {"r0": 5, "r1": 5})
+
+
+def test_python_has_what_the_commands_about_executions_have() -> None:
+    instance, plans = (read_instance(Path("train.json").read_bytes()), read_solution(Path("plans.json").read_bytes()))
+    done = read_trace(json.dumps(trace([["a", 0, None]])).encode())
+    assert drive(instance, plans, done, ["r1"]) == ("r1",)
+    assert drive(instance, plans, done, []) == ()
+    assert retime(instance, plans, done) == engine_named("reference").retime(instance, plans, done)
+    ring, turning = (read_instance(Path("ring.json").read_bytes()), read_solution(Path("turning.json").read_bytes()))
+    assert not list(is_acyclic(ring, carproof.untangle(ring, turning).solution))
+    assert carproof.untangle(ring, turning, 1e-9).undecided
+    assert give_way(ring, turning, "r0").is_first

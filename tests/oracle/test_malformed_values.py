@@ -132,6 +132,7 @@ GIVEN: Mapping[str, object] = {
     "stops": [Stop("c")],
     "trace": NOTHING,
     "log": NOTHING,
+    "ready": ["r"],
     "grants": (),
     "driver": "order",
     "data": write_solution(SOLVED),
@@ -339,6 +340,15 @@ def far_away(x: int) -> Instance:
         (lambda: carproof.audit(RIGHT, SOLVED, find_order="no"), "document/shape", "$.find_order"),  # type: ignore[arg-type]
         (lambda: carproof.Fleet(RIGHT, 0), "document/shape", "$"),  # type: ignore[arg-type]
         (lambda: carproof.release(RIGHT, SOLVED, NOTHING, NONE), "document/shape", "$.beyond"),
+        (lambda: carproof.retime(RIGHT, SOLVED, NONE), "document/shape", "$"),
+        (lambda: carproof.drive(RIGHT, SOLVED, Trace(0, (OF_R,)), ["r"]), "trace/robots", "$.plans"),
+        (lambda: carproof.drive(RIGHT, SOLVED, Trace(4, SOLVED.plans), ["t"]), "request/robot", "$.ready"),
+        (lambda: carproof.untangle(RIGHT, SOLVED, 0), "request/limit", "$.seconds"),
+        (lambda: carproof.untangle(RIGHT, NONE), "document/shape", "$"),
+        (lambda: carproof.give_way(RIGHT, SOLVED, "t"), "request/robot", "$.robot"),
+        (lambda: carproof.give_way(RIGHT, SOLVED, "r", -1), "request/now", "$.now"),
+        (lambda: carproof.give_way(RIGHT, SOLVED, "r", route=[NONE]), "document/shape", "$.route[0]"),
+        (lambda: carproof.give_way(RIGHT, SOLVED, "r", route=[]), "plan/start", "$.route"),
         (lambda: carproof.view_map(RIGHT, at=True), "document/shape", "--at"),
         (lambda: carproof.total_cost(RIGHT, SOLVED), "document/shape", "$.plans"),  # type: ignore[arg-type]
         (lambda: carproof.verify_bound(RIGHT, b"{}"), "document/shape", "$"),  # type: ignore[arg-type]
