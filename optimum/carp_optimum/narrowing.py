@@ -23,7 +23,7 @@ from carp_optimum.sat.priced_formula import priced_formula
 from carp_optimum.sat.solver import Solver
 from carp_spec import Instance, Plan, Refusal, total_cost
 
-PRICE_STEPS = 1600
+PRICE_STEPS = 1600  # of the search for prices that comes first
 LARGEST_GAP = 12  # ticks
 STRIDE, STRIDE_OF_CROWD = 2, 1
 """The largest total of a search is this far above the lower bound: one for each total would take twice the time.

@@ -16,7 +16,7 @@ from carp_optimized.jit.compiling import entry
 from carp_optimized.jit.kinds import Ints, ShortTable
 from carp_optimized.jit.references import Native, dereference
 
-LANDMARKS = 8
+LANDMARKS = 8  # places far apart: the distances to them bound all others from below
 RIGHT = 0.999
 """The share of estimates that are right where they serve as well as distances."""
 PART = 32

@@ -7,7 +7,7 @@ from carp_optimized.neighbourhood.orders import choice
 from carp_optimized.neighbourhood.polishing import NOISE, put_in_turn
 from carp_optimized.state.arrays import NEVER, NONE
 
-WALKS = 10
+WALKS = 10  # of the delayed robot, until enough others are met
 
 
 @compiled

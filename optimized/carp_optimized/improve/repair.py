@@ -23,16 +23,16 @@ from carp_spec.joint_rules import JOINT_RULES
 from carp_spec.requests import sound_solution
 from carp_spec.rule import Violation
 
-LARGEST_GROUP = 4
+LARGEST_GROUP = 4  # robots whose plans are searched for together
 STATES = 200
 """The search for plans of one group ends after this number of states."""
 ALL_STATES = 300
 """The search for all groups of a solution ends after this number of states."""
 FEW = 4
 """At most this many robots left out are planned in groups: groups of more take longer than other orders."""
-ATTEMPTS = 4
-ROUNDS = 200
-PASSES = 100
+ATTEMPTS = 4  # other first plans, each polished
+ROUNDS = 200  # of a polish
+PASSES = 100  # of CARP for other first plans
 Avoided: TypeAlias = tuple[RobotId, Plan]
 """A robot, and the plan of another that it has to avoid, or one visit that it must not make."""
 

@@ -33,7 +33,7 @@ PASSES = 4
 """Plans by LaCAM after each differ by a few percent, and not in one direction: the best are taken."""
 MEETING = 1 << 40
 """What a meeting counts in a key, more than any way and slack."""
-LATER = 1 << 20
+LATER = 1 << 20  # what a tick beyond the shortest way counts in a key, more than any distance
 COUNTED = 20
 """The bits that count the uses of an entry; the others are its key."""
 LINE = 3

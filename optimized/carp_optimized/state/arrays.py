@@ -26,7 +26,7 @@ ASKED, KEPT, UNCHANGED, PREFIX, SHARED, BOUND = range(6)  # the counters, in the
 COUNTERS = 6
 
 PLANS = 62  # plans that a set of plans in 64 bits can hold; the bit PLANS stands for all others
-ANSWERS = 512
+ANSWERS = 512  # of queries, that a round keeps
 NO_LIMIT = 1 << 62  # of a cost
 UNASKED = -2  # no record yet
 LATE = -2  # the plan of an answer is not below the limit

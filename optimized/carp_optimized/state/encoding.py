@@ -32,7 +32,7 @@ from carp_optimized.state.room import (
 )
 from carp_spec import Instance, Robot, Stop
 
-ROOTS = 1024
+ROOTS = 1024  # squares of small distances, whose terms are looked up
 Destination: TypeAlias = tuple[int, int, bool]
 Destinations: TypeAlias = dict[Destination, int]
 STRIPS = 7  # its square is the number of regions; a number of 64 bits has room for 63

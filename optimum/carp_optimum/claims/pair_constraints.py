@@ -23,7 +23,7 @@ from carp_optimum.claims.pair_states import Meeting, Side, find_claim, find_meet
 from carp_optimum.lagrangian.deadlines import Member
 from carp_optimum.lagrangian.price_search import PriceSearch
 
-MOST_SPOTS = 400
+MOST_SPOTS = 400  # resources, or ticks in them, that one robot of a pair can be in
 LEAST_WEIGHT = 8  # by which ways break a claim
 MOST_SIGHTS = 8  # of a claim, beside its last tick
 

@@ -31,10 +31,10 @@ from carp_spec.documents.bounds import DeadlinesDocument
 from carp_verify.bound.rules import LARGEST_RESTS, LARGEST_SEARCH, LARGEST_TABLE, LONGEST_STAY, stay_is_searched
 
 TICKS_BEYOND = 32  # of the horizon beyond the last arrival of a robot that nothing delays
-DELAYS = 64
-MOST_NODES = 1 << 21
+DELAYS = 64  # longest stays by which a robot may be late
+MOST_NODES = 1 << 21  # resources times delays of a table
 LAST_TICK = 20_000  # of prices, so that a step does not take long
-PATIENCE = 35
+PATIENCE = 35  # steps without a gain, after which the aim is lowered
 ENOUGH, LEAST_ENOUGH = 32, 4096
 """Parts of the aim, and of the best bound: patience begins again where both are gained.
 

@@ -43,12 +43,12 @@ from carp_verify.optimum.unsolvable import Clauses, FullGoal, NoWay, Obstacle, S
 if TYPE_CHECKING:
     from carp_optimum.background import BackgroundSearch
 
-CONFLICTS_TO_SHRINK = 300
+CONFLICTS_TO_SHRINK = 300  # of a search without one literal of a core
 CONFLICTS_BEFORE_BESIDE = 60_000
 """Most searches that end within a minute end before these, and faster while nothing uses the memory beside them."""
 CONFLICTS_BETWEEN_RESULTS = 2000
 """After this many conflicts the search asks for what was found beside it."""
-DELAY_OF_DOUBT = 20
+DELAY_OF_DOUBT = 20  # ticks of all robots together, at which it is asked whether there are any plans
 PARTS = 5
 """A search of which one of this many parts of the time is over plans with heuristics, for as long again."""
 

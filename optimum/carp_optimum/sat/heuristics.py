@@ -7,8 +7,8 @@ from carp_optimum.sat.solver import TimeOver
 from carp_spec import Instance, Plan, Refusal, RobotId, Solution, total_cost
 
 POLISHES, ROUNDS_OF_POLISH = 50, 200
-PASSES = 20
-STARTS = 6
+PASSES = 20  # of CARP, each with the robots first that the one before left out
+STARTS = 6  # seeds of annealing
 ROUNDS = 100_000
 WORK_OF_ROUND = 2
 """The propagations of a round of annealing, for each robot."""
