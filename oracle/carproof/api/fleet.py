@@ -58,8 +58,8 @@ class Change:
     """What news changed: the plans that are new or other than before, and who is no longer in the fleet.
 
     `unplanned` found no plan: those that were to be added are not in the fleet, and one that was to get stops keeps
-    those that it had. `left` have vanished by the tick `now` and are not in the fleet. `audit` is the proof, if it was
-    asked for.
+    those that it had. `left` have vanished by the tick `now`, or a tick before it where following is forbidden, and are
+    not in the fleet. `audit` is the proof, if it was asked for.
     """
 
     now: int
