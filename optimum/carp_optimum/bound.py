@@ -174,7 +174,7 @@ def _certificate(search: "PriceSearch") -> BoundDocument:
     from carp_optimum.lagrangian.price_search import PriceLists  # noqa: PLC0415 - numba is slow to load
 
     prices, priced, robots = search.prices(), search.priced_deadlines(), search.least_costs()
-    parts = sum(least or 0 for _, least in robots) - int(search.market.prices.worth[0])
+    parts = sum(least or 0 for _, least in robots) - int(search.dual.prices.worth[0])
     parts -= sum(each.price * (len(each.robots) - 1) for each in priced)
     shortest = search.shortest_costs()
     sure = sum(least or 0 for _, least in shortest)

@@ -61,7 +61,7 @@ class DeadlineSearch:
 
         `check` may raise `TimeOver`; the deadlines found until then are added first.
         """
-        wide = max(len(self.instance.graph.resources), self.search.market.delays)
+        wide = max(len(self.instance.graph.resources), self.search.dual.delays)
         if len(self.instance.robots) * wide > LARGEST_ENCODING:
             return 0
         delays = np.stack([self.search.delays() for _ in self.search.wander(STEPS, check)])
@@ -95,7 +95,7 @@ class DeadlineSearch:
         if key in self.known:
             return None
         self.known.add(key)
-        earliest = self.search.market.requests.earliest
+        earliest = self.search.dual.requests.earliest
         members = [Member(position, int(earliest[position]) + delay, 0, ()) for position, delay in allowed.items()]
         lines = short_refutation(lambda: Deadlines(members).formula(self.instance), check, LONGEST_REFUTATION)
         return Deadlines(members, lines) if lines else None
@@ -112,7 +112,7 @@ class _Cores:
     def __init__(self, search: PriceSearch, check: Callable[[], None]) -> None:
         self.instance = search.instance
         self.check = check
-        self.most = search.market.delays - 1
+        self.most = search.dual.delays - 1
         self.encoding = Encoding(self.instance, check)
         self.present = [self.encoding.formula.variable() for _ in self.instance.robots]
         self.solver = Solver(self.encoding.formula, self.look)

@@ -185,7 +185,7 @@ def first_entries(graph: Graph, durations: Longs, start: int, release: int) -> L
 
 def end_of(search: PriceSearch, one: Side, other: Side) -> int:
     """The tick before which a claim of two robots is searched for."""
-    earliest = search.market.requests.earliest
+    earliest = search.dual.requests.earliest
     return min(int(min(earliest[each.robot] + each.delay for each in (one, other))) + 1, search.horizon)
 
 
@@ -199,8 +199,8 @@ def side_of(search: PriceSearch, robot: int, at: IntTable, most: int, entries: d
 
     `entries` keeps the first entries of robots that were seen before.
     """
-    market = search.market
-    requests, graph = market.requests, market.graph
+    dual = search.dual
+    requests, graph = dual.requests, dual.graph
     start, goal = int(requests.start[robot]), int(requests.goal[robot])
     if start == goal or requests.rest[robot][start] == NONE:
         return None
@@ -216,7 +216,7 @@ def side_of(search: PriceSearch, robot: int, at: IntTable, most: int, entries: d
         return None
     spot = np.full(len(durations), NONE, np.int32)
     spot[resource] = np.arange(spots)
-    lengths = [*durations[resource].tolist(), 1 if market.parks else int(durations[goal]), 1, 1]
+    lengths = [*durations[resource].tolist(), 1 if dual.parks else int(durations[goal]), 1, 1]
     first = np.cumsum([0, *lengths]).astype(np.int32)
     states, horizon = int(first[-1]), search.horizon
     number = np.append(spot, [spots, NONE]).astype(np.int32)  # at the goal at the end, or nowhere

@@ -43,7 +43,7 @@ class SightSearch:
     def __init__(self, search: PriceSearch) -> None:
         self.search = search
         self.instance = search.instance
-        self.most = min(LARGEST_DELAY, search.market.delays - 1)
+        self.most = min(LARGEST_DELAY, search.dual.delays - 1)
         self.without_proof: set[Sequence[Member]] = set()
         self.entries: dict[int, Longs] = {}
         self.searched: Counter[tuple[int, int]] = Counter()
@@ -58,7 +58,7 @@ class SightSearch:
         `check` may raise `TimeOver`; the claims found until then are added first.
         """
         search = self.search
-        wide = max(len(self.instance.graph.resources), search.market.delays, search.horizon)
+        wide = max(len(self.instance.graph.resources), search.dual.delays, search.horizon)
         if len(self.instance.robots) * wide > LARGEST_ENCODING:
             return 0
         ways = [(search.delays(), search.places()) for _ in search.wander(STEPS, check)]

@@ -16,7 +16,7 @@ from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints, IntTable, Longs
 from carp_optimized.jit.references import Native, dereference
 from carp_optimized.state.arrays import NONE
-from carp_optimum.lagrangian.state import Market, duration_of, market_at
+from carp_optimum.lagrangian.state import Dual, dual_at, duration_of
 
 UNREACHED = -2
 
@@ -87,7 +87,7 @@ def spots_of(side: Side) -> int:
 
 
 @compiled
-def go_on(market: Market, side: Side, tick: int) -> None:
+def go_on(dual: Dual, side: Side, tick: int) -> None:
     """Fill in the states that follow each state at the tick."""
     spots = spots_of(side)
     for state in range(side.place.size):
@@ -95,13 +95,13 @@ def go_on(market: Market, side: Side, tick: int) -> None:
         side.following[state][0] = state
         side.branches[state] = 1
         if side.place[state] == NONE:
-            if spot > spots and tick + 1 == market.requests.release[side.robot]:
-                side.following[state][0] = entered(side, int(market.requests.start[side.robot]))
+            if spot > spots and tick + 1 == dual.requests.release[side.robot]:
+                side.following[state][0] = entered(side, int(dual.requests.start[side.robot]))
         elif state > side.first[spot]:
             side.following[state][0] = state - 1
         elif spot < spots:
-            move_on(market, side, state, tick)
-        elif not market.parks:
+            move_on(dual, side, state, tick)
+        elif not dual.parks:
             side.following[state][0] = int(side.first[spots + 1])
 
 
@@ -112,45 +112,45 @@ def entered(side: Side, resource: int) -> int:
 
 
 @compiled
-def move_on(market: Market, side: Side, state: int, tick: int) -> None:
+def move_on(dual: Dual, side: Side, state: int, tick: int) -> None:
     """Fill in the states that follow one in which the robot is free to leave."""
-    graph, robot = market.graph, side.robot
-    rest = market.requests.rest[robot]
+    graph, robot = dual.graph, side.robot
+    rest = dual.requests.rest[robot]
     here = int(side.place[state])
-    late = tick + 1 - int(market.requests.earliest[robot])
+    late = tick + 1 - int(dual.requests.earliest[robot])
     count = 1 if late + 1 + int(rest[here]) <= side.delay else 0
     for move in range(int(graph.first[here]), int(graph.first[here + 1])):
         target = int(graph.target[move])
-        after = late + duration_of(market, robot, target) + int(rest[target])
+        after = late + duration_of(dual, robot, target) + int(rest[target])
         if side.spot[target] != NONE and after <= side.delay:
             side.following[state][count] = entered(side, target)
             count += 1
-        if target == market.requests.goal[robot] and late <= side.delay:
+        if target == dual.requests.goal[robot] and late <= side.delay:
             side.following[state][count] = int(side.first[spots_of(side) + 1]) - 1
             count += 1
     side.branches[state] = count
 
 
 @entry
-def find_claim(native: Native[Market], native_meeting: Native[Meeting], end: int, ways: int) -> int:
+def find_claim(native: Native[Dual], native_meeting: Native[Meeting], end: int, ways: int) -> int:
     """Find the heaviest claim of two robots before the tick `end`, and fill `chosen`: its weight less `ways`, or 0."""
-    market, meeting = market_at(native), meeting_at(native_meeting)
+    dual, meeting = dual_at(native), meeting_at(native_meeting)
     meeting.found[0] = 0
     size = begin(meeting)
     for tick in range(end):
         if tick > 0:
             weigh(meeting, size, tick, ways)
-        size = step(market, meeting, size, tick)
+        size = step(dual, meeting, size, tick)
     return int(meeting.found[0])
 
 
 @entry
-def find_meetings(native: Native[Market], native_meeting: Native[Meeting], whose: int, earlier: int) -> int:
+def find_meetings(native: Native[Dual], native_meeting: Native[Meeting], whose: int, earlier: int) -> int:
     """Find out which spots can be taken together at the claim's tick; returns how many pairs are in spots of the claim.
 
     The spots in which the first robot, or with `whose` the other, was at an earlier tick before them are `blamed`.
     """
-    market, meeting = market_at(native), meeting_at(native_meeting)
+    dual, meeting = dual_at(native), meeting_at(native_meeting)
     last = int(meeting.found[1])
     size = begin(meeting)
     for tick in range(last):
@@ -158,7 +158,7 @@ def find_meetings(native: Native[Market], native_meeting: Native[Meeting], whose
             for number in range(size):
                 spots = spots_at(meeting, number, tick)
                 meeting.origin[tick % 2][number] = spots[0] if whose == 0 else spots[1]
-        size = step(market, meeting, size, tick)
+        size = step(dual, meeting, size, tick)
     relate(meeting, size, last)
     count = 0
     for number in range(size):
@@ -191,11 +191,11 @@ def may_be(side: Side, state: int, tick: int) -> bool:
 
 
 @compiled
-def step(market: Market, meeting: Meeting, size: int, tick: int) -> int:
+def step(dual: Dual, meeting: Meeting, size: int, tick: int) -> int:
     """Reach all pairs of states at the next tick: how many."""
     one, other = meeting.one, meeting.other
-    go_on(market, one, tick)
-    go_on(market, other, tick)
+    go_on(dual, one, tick)
+    go_on(dual, other, tick)
     pairs, later = meeting.pairs[tick % 2], meeting.pairs[(tick + 1) % 2]
     origin, later_origin = meeting.origin[tick % 2], meeting.origin[(tick + 1) % 2]
     wide = other.place.size
@@ -217,7 +217,7 @@ def step(market: Market, meeting: Meeting, size: int, tick: int) -> int:
                 if (
                     meeting.mark[pair] != mark
                     and may_be(other, other_after, tick + 1)
-                    and can_move(market, place, target, other_place, int(other.place[other_after]))
+                    and can_move(dual, place, target, other_place, int(other.place[other_after]))
                 ):
                     meeting.mark[pair] = mark
                     later[reached] = pair
@@ -227,10 +227,10 @@ def step(market: Market, meeting: Meeting, size: int, tick: int) -> int:
 
 
 @compiled
-def can_move(market: Market, place: int, target: int, other_place: int, other_target: int) -> bool:
+def can_move(dual: Dual, place: int, target: int, other_place: int, other_target: int) -> bool:
     """Whether one robot may move, or stay, from place to target while the other does the same."""
     if target == other_target:
-        return target == NONE or int(market.graph.capacity[target]) > 1
+        return target == NONE or int(dual.graph.capacity[target]) > 1
     return min(target, other_target) == NONE or target != other_place or other_target != place
 
 

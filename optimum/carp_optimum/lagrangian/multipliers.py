@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from carp_optimized.jit.kinds import Ints, IntTable, LongTable
 from carp_optimized.state.arrays import NONE, Graph
-from carp_optimum.lagrangian.state import Cells, Charges, Market, Prices, Requests, Scratch, Usage, Ways
+from carp_optimum.lagrangian.state import Cells, Charges, Dual, Prices, Requests, Scratch, Usage, Ways
 from carp_spec import Instance, Refusal
 from carp_verify.bound.rules import size_fits
 
@@ -37,8 +37,8 @@ def requests_of(instance: Instance) -> Requests:
     )
 
 
-def market_of(instance: Instance, graph: Graph, requests: Requests, longest: int, horizon: int, delays: int) -> Market:
-    """A market with tables for this many ticks and delays, and no rows."""
+def dual_of(instance: Instance, graph: Graph, requests: Requests, longest: int, horizon: int, delays: int) -> Dual:
+    """The dual with tables for this many ticks and delays, and no rows."""
     robots, resources, edges = requests.start.size, graph.duration.size, graph.target.size
     ticks = int((requests.earliest - requests.release).max(initial=0)) + delays
     visits = ticks // int(graph.duration.min(initial=1)) + 2
@@ -57,7 +57,7 @@ def market_of(instance: Instance, graph: Graph, requests: Requests, longest: int
     )
     empty, wide = np.zeros((0, 0), np.int32), np.zeros((0, 0), np.int64)
     met = np.zeros(graph.room.size, np.int32)
-    market = Market(
+    dual = Dual(
         graph=graph,
         requests=requests,
         limits=no_cells(graph.room.size),
@@ -83,7 +83,7 @@ def market_of(instance: Instance, graph: Graph, requests: Requests, longest: int
         parks=instance.after_goal == "park",
         is_even=bool((graph.duration == graph.duration[:1]).all()),
     )
-    return with_room(market, 1, 1)
+    return with_room(dual, 1, 1)
 
 
 def no_cells(numbers: int) -> Cells:
@@ -100,40 +100,40 @@ def moves_back(instance: Instance) -> Ints:
     return np.array([number.get((target, source), NONE) for source, target in moves], np.int32)
 
 
-def with_rows(market: Market, constraints: Sequence[int]) -> Market:
-    """The market with rows for these constraints without one, and for the moves of their resources.
+def with_rows(dual: Dual, constraints: Sequence[int]) -> Dual:
+    """The dual with rows for these constraints without one, and for the moves of their resources.
 
     There are no more rows once the tables would be too large.
     """
-    row, entry = market.limits.row, market.exchanges.row
-    graph = market.graph
+    row, entry = dual.limits.row, dual.exchanges.row
+    graph = dual.graph
     rows, entries = int(row.max(initial=0)) + 1, int(entry.max(initial=0)) + 1
     for constraint in constraints:
         moves: list[int] = []
         if constraint < graph.duration.size:
             leaving = range(graph.first[constraint], graph.first[constraint + 1])
-            coming = market.prices.into[graph.backward_first[constraint] : graph.backward_first[constraint + 1]]
+            coming = dual.prices.into[graph.backward_first[constraint] : graph.backward_first[constraint + 1]]
             moves = [move for move in (*leaving, *coming.tolist()) if entry[move] == 0]
-        if max(rows + 1, entries + len(moves)) * market.horizon > LARGEST_PRICED:
+        if max(rows + 1, entries + len(moves)) * dual.horizon > LARGEST_PRICED:
             break
         row[constraint] = rows
         rows += 1
         entry[np.array(moves, np.int64)] = range(entries, entries + len(moves))
         entries += len(moves)
-    rows_there, entries_there = len(market.limits.price), len(market.exchanges.price)
+    rows_there, entries_there = len(dual.limits.price), len(dual.exchanges.price)
     if rows <= rows_there and entries <= entries_there:
-        return market
-    most = LARGEST_PRICED // max(market.horizon, 1)
-    return with_room(market, max(rows, min(2 * rows_there, most)), max(entries, min(2 * entries_there, most)))
+        return dual
+    most = LARGEST_PRICED // max(dual.horizon, 1)
+    return with_room(dual, max(rows, min(2 * rows_there, most)), max(entries, min(2 * entries_there, most)))
 
 
-def with_room(market: Market, rows: int, entries: int) -> Market:
-    """The market with tables for so many rows of constraints and of moves, which are no fewer than before."""
-    horizon, prices, usage = market.horizon, market.prices, market.usage
+def with_room(dual: Dual, rows: int, entries: int) -> Dual:
+    """The dual with tables for so many rows of constraints and of moves, which are no fewer than before."""
+    horizon, prices, usage = dual.horizon, dual.prices, dual.usage
     changed = np.full(rows - prices.changed.size, horizon, np.int32)
-    return market._replace(
-        limits=larger_cells(market.limits, rows, horizon),
-        exchanges=larger_cells(market.exchanges, entries, horizon),
+    return dual._replace(
+        limits=larger_cells(dual.limits, rows, horizon),
+        exchanges=larger_cells(dual.exchanges, entries, horizon),
         prices=prices._replace(
             present=larger(prices.present, rows, horizon),
             crossing=larger(prices.crossing, rows, horizon),

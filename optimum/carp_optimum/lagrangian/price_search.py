@@ -17,7 +17,7 @@ from carp_optimum.lagrangian.deadlines import Deadlines, flattened
 from carp_optimum.lagrangian.multipliers import (
     LARGEST_ARRAY,
     charges_of,
-    market_of,
+    dual_of,
     refuse_table,
     requests_of,
     with_rows,
@@ -95,15 +95,15 @@ class PriceSearch:
         if not stay_is_searched(longest):
             message = f"the pace times the duration must be at most {LONGEST_STAY}, the limit, and is {longest}"
             raise Refusal("limit", "$.graph", stay_is_searched.id, message)
-        find_rests(Native(market_of(instance, graph, requests, longest, 0, 1)))
+        find_rests(Native(dual_of(instance, graph, requests, longest, 0, 1)))
         last = max(requests.earliest.tolist(), default=0)
         refuse_tick("$.graph", last)
         most = min(LARGEST_ARRAY // max(graph.room.size, 1), LARGEST_TABLE // max(robots, 1))
         self.horizon = min(max(last, 0) + longest + TICKS_BEYOND, most, LAST_TICK)
         wanted = min(max(DELAYS * longest, self.horizon + longest), LARGEST_TABLE // max(robots, 1))
         delays = max(1, min(wanted, MOST_NODES // max(resources, 1), LARGEST - last))
-        self.market = market_of(instance, graph, requests, longest, self.horizon, delays)
-        self.native = Native(self.market)
+        self.dual = dual_of(instance, graph, requests, longest, self.horizon, delays)
+        self.native = Native(self.dual)
         self.deadlines: list[Deadlines] = []
         self.fees = np.zeros(0, np.int64)
         self._course_of_fees = np.zeros(0, np.int64)
@@ -115,7 +115,7 @@ class PriceSearch:
         self.count = 0
 
     def _point(self) -> Point:
-        return Point(self._priced(self.market.limits), self._priced(self.market.exchanges), self.fees.copy())
+        return Point(self._priced(self.dual.limits), self._priced(self.dual.exchanges), self.fees.copy())
 
     def _priced(self, cells: Cells) -> tuple[Longs, Longs]:
         active = cells.active[: cells.size[0]]
@@ -135,19 +135,19 @@ class PriceSearch:
         for first in range(0, robots, PART):
             check()
             total += find_ways(self.native, first, min(first + PART, robots))
-        if self.market.usage.met_anew[0] > 0:
+        if self.dual.usage.met_anew[0] > 0:
             self._add_rows()
         self.longest = max(self.longest, self._clock() - began)
         return total
 
     def _add_rows(self) -> None:
         """Give rows to the constraints where robots met without one, and to the resources of groups among them."""
-        usage, graph = self.market.usage, self.market.graph
+        usage, graph = self.dual.usage, self.dual.graph
         for group in np.flatnonzero(usage.met[graph.duration.size :]).tolist():
             usage.met[graph.member[graph.members_first[group] : graph.members_first[group + 1]]] = 1
-        self.market = with_rows(self.market, np.flatnonzero((usage.met > 0) & (self.market.limits.row == 0)).tolist())
-        self.native = Native(self.market)
-        usage = self.market.usage
+        self.dual = with_rows(self.dual, np.flatnonzero((usage.met > 0) & (self.dual.limits.row == 0)).tolist())
+        self.native = Native(self.dual)
+        usage = self.dual.usage
         for counts in (usage.present, usage.moving, usage.staying, usage.met, usage.met_anew):
             counts[...] = 0
         count_ways(self.native)
@@ -155,13 +155,13 @@ class PriceSearch:
 
     def _charge(self) -> None:
         """Fill the tables of what an arrival costs each robot, by its delay, and of what it pays on its way."""
-        requests, flat = self.market.requests, self._flat
+        requests, flat = self.dual.requests, self._flat
         if len(self.deadlines) == 0 and self._is_charged:
             return  # nothing has changed
         self._is_charged = True
-        cost, least, _, fee, _ = self.market.charges
+        cost, least, _, fee, _ = self.dual.charges
         cost[:] = 0
-        delay = np.minimum(flat.arrival - requests.earliest[flat.robot], self.market.delays)
+        delay = np.minimum(flat.arrival - requests.earliest[flat.robot], self.dual.delays)
         can = delay >= 0
         np.add.at(cost, (flat.robot[can], delay[can]), self.fees[flat.group[can]])
         cost[:] = np.cumsum(cost[:, ::-1], axis=1)[:, ::-1]
@@ -212,8 +212,8 @@ class PriceSearch:
         for place, number in rows.items():
             row[place] = number
         fee = np.zeros((len(rows) + 1, resources), np.int64)
-        self.market = self.market._replace(charges=charges_of(row, fee, self.market.delays))
-        self.native = Native(self.market)
+        self.dual = self.dual._replace(charges=charges_of(row, fee, self.dual.delays))
+        self.native = Native(self.dual)
         self._is_charged = False
 
     def priced_deadlines(self) -> tuple[DeadlinesDocument, ...]:
@@ -224,16 +224,16 @@ class PriceSearch:
     def _kept_by(self) -> Longs:
         """How many members of each deadlines keep their own in the robots' cheapest ways."""
         flat = self._flat
-        keeps = self.delays()[flat.robot] <= flat.arrival - self.market.requests.earliest[flat.robot]
+        keeps = self.delays()[flat.robot] <= flat.arrival - self.dual.requests.earliest[flat.robot]
         if flat.place.size > 0:
             see_ways(self.native)
-            places = self.market.charges.place[flat.robot, flat.seen]
+            places = self.dual.charges.place[flat.robot, flat.seen]
             keeps |= flat.inside[np.arange(len(places)), places]
         return np.bincount(flat.group, keeps, len(flat.sizes)).astype(np.int64)
 
     def delays(self) -> Longs:
         """The delays of the robots' cheapest ways; 0 for one that has none."""
-        requests, ways = self.market.requests, self.market.ways
+        requests, ways = self.dual.requests, self.dual.ways
         last = np.maximum(ways.length - 1, 0)
         delays: Longs = np.where(ways.length > 0, ways.enter[np.arange(len(last)), last] - requests.earliest, 0)
         return np.maximum(delays, 0)
@@ -322,7 +322,7 @@ class PriceSearch:
     def places(self) -> IntTable:
         """Where the cheapest ways have the robots, by robot and tick."""
         see_ways(self.native)
-        return self.market.charges.place.astype(np.int16)
+        return self.dual.charges.place.astype(np.int16)
 
     def prices(self) -> PriceLists:
         """The prices that are not 0."""
@@ -348,7 +348,7 @@ class PriceSearch:
         """
         costs = dict(self.shortest_costs())
         claims: list[tuple[Fraction, int, RobotId, int]] = []
-        steps = self.market.scratch.steps
+        steps = self.dual.scratch.steps
         for position, (robot, shortest) in enumerate(costs.items()):
             if shortest is not None:
                 steps[0] = 0
@@ -364,5 +364,5 @@ class PriceSearch:
 
     def shortest_costs(self) -> tuple[tuple[RobotId, int | None], ...]:
         """The cost of each robot's shortest way, in parts of a tick."""
-        robots = zip(self.instance.robots, self.market.requests.earliest.tolist(), strict=True)
+        robots = zip(self.instance.robots, self.dual.requests.earliest.tolist(), strict=True)
         return tuple((each.id, None if at == NONE else self.scale * (at - each.release)) for each, at in robots)

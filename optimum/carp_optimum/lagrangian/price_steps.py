@@ -13,7 +13,7 @@ is for the prices of constraints, or of exchanges.
 
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.references import Native
-from carp_optimum.lagrangian.state import Market, cells_of, change_price, market_at
+from carp_optimum.lagrangian.state import Dual, cells_of, change_price, dual_at
 from carp_optimum.lagrangian.usage import list_cell, surplus_of_exchange
 
 UNIT = 64  # of a course
@@ -25,27 +25,27 @@ LARGEST_PRICE = 1 << 40
 
 
 @entry
-def turn(native: Native[Market], is_exchange: bool) -> int:
+def turn(native: Native[Dual], is_exchange: bool) -> int:
     """Turn the course of the prices, and leave out cells that are active no longer: the square of the course."""
-    market = market_at(native)
-    cells = cells_of(market, is_exchange)
+    dual = dual_at(native)
+    cells = cells_of(dual, is_exchange)
     kept = 0
     square = 0
     less = 0
     for k in range(int(cells.size[0])):
         cell = int(cells.active[k])
-        number, tick = cell // market.horizon, cell % market.horizon
+        number, tick = cell // dual.horizon, cell % dual.horizon
         row = int(cells.row[number])
         price = int(cells.price[row][tick])
         if is_exchange:
-            surplus = surplus_of_exchange(market, number, tick)
+            surplus = surplus_of_exchange(dual, number, tick)
         else:
-            surplus = int(market.usage.present[number][tick]) - int(market.graph.room[number])
+            surplus = int(dual.usage.present[number][tick]) - int(dual.graph.room[number])
         after = int(cells.course[row][tick]) * KEPT // PARTS + UNIT * max(min(surplus, MOST_SURPLUS), -MOST_SURPLUS)
         if after < 0 and price == 0:  # no price falls below 0
             after = 0
         cells.course[row][tick] = after
-        if takes_less(market, is_exchange, number):
+        if takes_less(dual, is_exchange, number):
             less += after * after
         else:
             square += after * after
@@ -59,44 +59,44 @@ def turn(native: Native[Market], is_exchange: bool) -> int:
 
 
 @compiled
-def takes_less(market: Market, is_exchange: bool, number: int) -> bool:
+def takes_less(dual: Dual, is_exchange: bool, number: int) -> bool:
     """Whether the row is that of a group or of an exchange."""
-    return is_exchange or number >= market.graph.duration.size
+    return is_exchange or number >= dual.graph.duration.size
 
 
 @entry
-def walk(native: Native[Market], is_exchange: bool, gain: int, square: int) -> None:
+def walk(native: Native[Dual], is_exchange: bool, gain: int, square: int) -> None:
     """Change the prices along their course, of that square together with whatever else is changed, to gain so much."""
-    market = market_at(native)
-    cells = cells_of(market, is_exchange)
+    dual = dual_at(native)
+    cells = cells_of(dual, is_exchange)
     for k in range(int(cells.size[0])):
         cell = int(cells.active[k])
-        number, tick = cell // market.horizon, cell % market.horizon
+        number, tick = cell // dual.horizon, cell % dual.horizon
         row = int(cells.row[number])
-        less = LESS if takes_less(market, is_exchange, number) else 1
+        less = LESS if takes_less(dual, is_exchange, number) else 1
         price = int(cells.price[row][tick])
         after = price + gain * UNIT * int(cells.course[row][tick]) // (square * less)
         more = min(max(after, 0), LARGEST_PRICE) - price
         if more != 0:
-            change_price(market, is_exchange, number, tick, more)
+            change_price(dual, is_exchange, number, tick, more)
 
 
 @entry
-def forget(native: Native[Market], is_exchange: bool) -> None:
+def forget(native: Native[Dual], is_exchange: bool) -> None:
     """Set the prices and courses to 0."""
-    market = market_at(native)
-    cells = cells_of(market, is_exchange)
+    dual = dual_at(native)
+    cells = cells_of(dual, is_exchange)
     for k in range(int(cells.size[0])):
-        number, tick = int(cells.active[k]) // market.horizon, int(cells.active[k]) % market.horizon
+        number, tick = int(cells.active[k]) // dual.horizon, int(cells.active[k]) % dual.horizon
         row = int(cells.row[number])
         cells.course[row][tick] = 0
-        change_price(market, is_exchange, number, tick, -int(cells.price[row][tick]))
+        change_price(dual, is_exchange, number, tick, -int(cells.price[row][tick]))
 
 
 @entry
-def set_price(native: Native[Market], is_exchange: bool, cell: int, price: int) -> None:
+def set_price(native: Native[Dual], is_exchange: bool, cell: int, price: int) -> None:
     """Set the price of a cell that had none."""
-    market = market_at(native)
-    number, tick = cell // market.horizon, cell % market.horizon
-    change_price(market, is_exchange, number, tick, price)
-    list_cell(market, cells_of(market, is_exchange), number, tick)
+    dual = dual_at(native)
+    number, tick = cell // dual.horizon, cell % dual.horizon
+    change_price(dual, is_exchange, number, tick, price)
+    list_cell(dual, cells_of(dual, is_exchange), number, tick)

@@ -13,12 +13,12 @@ from carp_optimized.jit.references import Native
 from carp_optimized.queries.heap import push, replace_root
 from carp_optimized.state.arrays import NONE
 from carp_optimum.lagrangian.state import (
-    Market,
+    Dual,
     Scratch,
+    dual_at,
     duration_of,
     further_price,
     goal_price,
-    market_at,
     move_between,
     move_price,
     stay_price,
@@ -29,39 +29,39 @@ ENDLESS = 1 << 62
 
 
 @entry
-def find_rests(native: Native[Market]) -> None:
+def find_rests(native: Native[Dual]) -> None:
     """Fill `rest` and `earliest` of all robots, by Dijkstra from the goals backwards."""
-    market = market_at(native)
-    requests = market.requests
+    dual = dual_at(native)
+    requests = dual.requests
     for robot in range(requests.start.size):
-        settle_rests(market, robot)
+        settle_rests(dual, robot)
         start = int(requests.start[robot])
         requests.earliest[robot] = NONE
         if start == requests.goal[robot]:
             requests.earliest[robot] = int(requests.release[robot])
         elif requests.rest[robot][start] != NONE:
-            ticks = duration_of(market, robot, start) + int(requests.rest[robot][start])
+            ticks = duration_of(dual, robot, start) + int(requests.rest[robot][start])
             requests.earliest[robot] = int(requests.release[robot]) + ticks
 
 
 @compiled
-def settle_rests(market: Market, robot: int) -> None:
+def settle_rests(dual: Dual, robot: int) -> None:
     """Fill the rests of one robot. Where all stays are alike, a heap's order is that of a queue."""
-    graph = market.graph
-    rest = market.requests.rest[robot]
-    keys = market.scratch.keys
-    nodes = market.scratch.nodes
+    graph = dual.graph
+    rest = dual.requests.rest[robot]
+    keys = dual.scratch.keys
+    nodes = dual.scratch.nodes
     for here in range(graph.duration.size):
         rest[here] = NONE
     first = 0
     size = 0
-    goal = int(market.requests.goal[robot])
+    goal = int(dual.requests.goal[robot])
     for edge in range(int(graph.backward_first[goal]), int(graph.backward_first[goal + 1])):
-        size = wait_for_rest(market, size, 0, int(graph.source[edge]))
+        size = wait_for_rest(dual, size, 0, int(graph.source[edge]))
     while size > first:
         ticks = int(keys[first])
         here = int(nodes[first])
-        if market.is_even:
+        if dual.is_even:
             first += 1
         else:
             size -= 1
@@ -69,17 +69,17 @@ def settle_rests(market: Market, robot: int) -> None:
         if rest[here] != NONE:
             continue
         rest[here] = ticks
-        further = ticks + duration_of(market, robot, here)
+        further = ticks + duration_of(dual, robot, here)
         for edge in range(int(graph.backward_first[here]), int(graph.backward_first[here + 1])):
             if rest[int(graph.source[edge])] == NONE:
-                size = wait_for_rest(market, size, further, int(graph.source[edge]))
+                size = wait_for_rest(dual, size, further, int(graph.source[edge]))
 
 
 @compiled
-def wait_for_rest(market: Market, size: int, ticks: int, here: int) -> int:
+def wait_for_rest(dual: Dual, size: int, ticks: int, here: int) -> int:
     """Put a resource into the queue or heap; its new size."""
-    keys, nodes = market.scratch.keys, market.scratch.nodes
-    if market.is_even:
+    keys, nodes = dual.scratch.keys, dual.scratch.nodes
+    if dual.is_even:
         keys[size] = ticks
         nodes[size] = here
     else:
@@ -88,120 +88,120 @@ def wait_for_rest(market: Market, size: int, ticks: int, here: int) -> int:
 
 
 @entry
-def find_ways(native: Native[Market], begin: int, end: int) -> int:
+def find_ways(native: Native[Dual], begin: int, end: int) -> int:
     """Give the robots from one on up to another a cheapest way: the sum of their least priced costs, after `add_up`."""
-    market = market_at(native)
+    dual = dual_at(native)
     total = 0
     for robot in range(begin, end):
-        if market.requests.earliest[robot] != NONE:
-            total += find_way(market, robot)
+        if dual.requests.earliest[robot] != NONE:
+            total += find_way(dual, robot)
     return total
 
 
 @compiled
-def find_way(market: Market, robot: int) -> int:
+def find_way(dual: Dual, robot: int) -> int:
     """Give the robot a cheapest way: the least priced cost of all its ways, or less where a delay has no nodes."""
-    requests = market.requests
+    requests = dual.requests
     start = int(requests.start[robot])
     release = int(requests.release[robot])
-    if market.ways.length[robot] == 0 and start != requests.goal[robot]:
-        take_shortest(market, robot)
-    best = way_price(market, robot)
+    if dual.ways.length[robot] == 0 and start != requests.goal[robot]:
+        take_shortest(dual, robot)
+    best = way_price(dual, robot)
     if start == requests.goal[robot]:
-        at_once = goal_price(market, robot, release) + int(market.charges.cost[robot][0])
+        at_once = goal_price(dual, robot, release) + int(dual.charges.cost[robot][0])
         if at_once < best:
             best = at_once
-            count_way(market, robot, -1)
-            market.ways.length[robot] = 1
-            market.ways.resource[robot][0] = start
-            market.ways.enter[robot][0] = release
-            count_way(market, robot, 1)
+            count_way(dual, robot, -1)
+            dual.ways.length[robot] = 1
+            dual.ways.resource[robot][0] = start
+            dual.ways.enter[robot][0] = release
+            count_way(dual, robot, 1)
     if requests.rest[robot][start] != NONE:
-        least = int(market.charges.least[robot][0])
-        best = least if best > least and find_free(market, robot) else settle(market, robot, best)
-        best = min(best, int(market.charges.least[robot][market.delays]))
+        least = int(dual.charges.least[robot][0])
+        best = least if best > least and find_free(dual, robot) else settle(dual, robot, best)
+        best = min(best, int(dual.charges.least[robot][dual.delays]))
     return best
 
 
 @compiled
-def take_shortest(market: Market, robot: int) -> None:
+def take_shortest(dual: Dual, robot: int) -> None:
     """Write a way that nothing delays, as the first one: always into the resource that fewest robots use then."""
-    graph, requests = market.graph, market.requests
+    graph, requests = dual.graph, dual.requests
     rest = requests.rest[robot]
     goal = int(requests.goal[robot])
     here = int(requests.start[robot])
     tick = int(requests.release[robot])
     visits = 0
     while here != goal:
-        market.ways.resource[robot][visits] = here
-        market.ways.enter[robot][visits] = tick
+        dual.ways.resource[robot][visits] = here
+        dual.ways.enter[robot][visits] = tick
         visits += 1
-        tick += duration_of(market, robot, here)
+        tick += duration_of(dual, robot, here)
         following = NONE
         fewest = 0
         for move in range(int(graph.first[here]), int(graph.first[here + 1])):
             target = int(graph.target[move])
-            leads = rest[target] != NONE and rest[here] == rest[target] + duration_of(market, robot, target)
+            leads = rest[target] != NONE and rest[here] == rest[target] + duration_of(dual, robot, target)
             if (target == goal and rest[here] == 0) or leads:
-                used = int(market.usage.present[target][tick]) if tick < market.horizon else 0
+                used = int(dual.usage.present[target][tick]) if tick < dual.horizon else 0
                 if following == NONE or used < fewest:
                     following = target
                     fewest = used
         here = following
-    market.ways.resource[robot][visits] = goal
-    market.ways.enter[robot][visits] = tick
-    market.ways.length[robot] = visits + 1
-    count_way(market, robot, 1)
+    dual.ways.resource[robot][visits] = goal
+    dual.ways.enter[robot][visits] = tick
+    dual.ways.length[robot] = visits + 1
+    count_way(dual, robot, 1)
 
 
 @compiled
-def way_price(market: Market, robot: int) -> int:
+def way_price(dual: Dual, robot: int) -> int:
     """The priced cost of the way that the robot has; endless if it has none."""
-    resources = market.ways.resource[robot]
-    enters = market.ways.enter[robot]
-    last = int(market.ways.length[robot]) - 1
+    resources = dual.ways.resource[robot]
+    enters = dual.ways.enter[robot]
+    last = int(dual.ways.length[robot]) - 1
     if last < 0:
         return ENDLESS
     paid = 0
     for visit in range(last):
         here = int(resources[visit])
         leaves = int(enters[visit + 1])
-        paid += price_on_way(market, robot, here, int(enters[visit]), leaves)
-        paid += move_price(market, move_between(market, here, int(resources[visit + 1])), leaves)
+        paid += price_on_way(dual, robot, here, int(enters[visit]), leaves)
+        paid += move_price(dual, move_between(dual, here, int(resources[visit + 1])), leaves)
     arrival = int(enters[last])
-    delay = arrival - int(market.requests.earliest[robot])
-    return paid + goal_price(market, robot, arrival) + int(market.charges.cost[robot][delay])
+    delay = arrival - int(dual.requests.earliest[robot])
+    return paid + goal_price(dual, robot, arrival) + int(dual.charges.cost[robot][delay])
 
 
 @inlined
-def fees_of(market: Market, robot: int, here: int, begin: int, end: int) -> int:
+def fees_of(dual: Dual, robot: int, here: int, begin: int, end: int) -> int:
     """The payment of a robot that is seen in the resource at ticks in [begin, end), on its way."""
     paid = 0
-    row = market.charges.row[robot]
-    for tick in range(begin, min(end, market.horizon)):
-        paid += int(market.charges.fee[int(row[tick])][here])
+    row = dual.charges.row[robot]
+    for tick in range(begin, min(end, dual.horizon)):
+        paid += int(dual.charges.fee[int(row[tick])][here])
     return paid
 
 
 @compiled
-def price_on_way(market: Market, robot: int, here: int, enter: int, leave: int) -> int:
+def price_on_way(dual: Dual, robot: int, here: int, enter: int, leave: int) -> int:
     """The price of a stay in [enter, leave) on the way, where the robot is seen included."""
-    return stay_price(market, here, enter, leave) + fees_of(market, robot, here, enter, leave)
+    return stay_price(dual, here, enter, leave) + fees_of(dual, robot, here, enter, leave)
 
 
 @compiled
-def find_free(market: Market, robot: int) -> bool:
+def find_free(dual: Dual, robot: int) -> bool:
     """Search, depth first, for a way that nothing delays and that pays nothing, and take it.
 
     Each resource has one tick at which such a way leaves it. Those where there is room are tried first, so that ways
     meet less often. On a large map few nodes are seen, of many that are as good.
     """
-    requests, scratch, graph = market.requests, market.scratch, market.graph
+    requests, scratch, graph = dual.requests, dual.scratch, dual.graph
     start, release = int(requests.start[robot]), int(requests.release[robot])
     rest = requests.rest[robot]
-    ready = release + duration_of(market, robot, start)
-    is_free = market.charges.cost[robot][0] == market.charges.least[robot][0]
-    if not is_free or start == requests.goal[robot] or price_on_way(market, robot, start, release, ready) > 0:
+    ready = release + duration_of(dual, robot, start)
+    is_free = dual.charges.cost[robot][0] == dual.charges.least[robot][0]
+    if not is_free or start == requests.goal[robot] or price_on_way(dual, robot, start, release, ready) > 0:
         return False
     size = graph.duration.size
     scratch.generation[0] = int(scratch.generation[0]) + scratch.parent.size
@@ -214,20 +214,20 @@ def find_free(market: Market, robot: int) -> bool:
         here = node % size
         tick = release + node // size
         if rest[here] == 0:
-            if arrival_price(market, robot, here, tick, 0) == market.charges.cost[robot][0]:
-                take_way(market, robot, node)
+            if arrival_price(dual, robot, here, tick, 0) == dual.charges.cost[robot][0]:
+                take_way(dual, robot, node)
                 return True
             continue
         for has_room in range(2):
             for move in range(int(graph.first[here]), int(graph.first[here + 1])):
                 target = int(graph.target[move])
-                ready = tick + duration_of(market, robot, target)
-                used = int(market.usage.present[target][tick]) if tick < market.horizon else 0
+                ready = tick + duration_of(dual, robot, target)
+                used = int(dual.usage.present[target][tick]) if tick < dual.horizon else 0
                 leads = rest[target] != NONE and rest[here] == int(rest[target]) + ready - tick
                 if leads and (used < graph.capacity[target]) == (has_room > 0):
                     after = (ready - release) * size + target
                     mark = int(scratch.generation[0]) + after
-                    if scratch.mark[target] != mark and entry_price(market, robot, move, tick, ready) == 0:
+                    if scratch.mark[target] != mark and entry_price(dual, robot, move, tick, ready) == 0:
                         scratch.mark[target] = mark
                         scratch.parent[after] = node
                         scratch.nodes[waiting] = after
@@ -236,31 +236,31 @@ def find_free(market: Market, robot: int) -> bool:
 
 
 @inlined
-def entry_price(market: Market, robot: int, move: int, tick: int, ready: int) -> int:
+def entry_price(dual: Dual, robot: int, move: int, tick: int, ready: int) -> int:
     """The price of moving at the tick, and of a stay on the way until the robot is ready to leave again."""
-    target = int(market.graph.target[move])
-    moving = int(market.prices.entering[min(tick, market.horizon)][int(market.exchanges.row[move])])
-    staying = further_price(market, target, tick + 1, ready)
-    return moving + staying + fees_of(market, robot, target, tick, ready)
+    target = int(dual.graph.target[move])
+    moving = int(dual.prices.entering[min(tick, dual.horizon)][int(dual.exchanges.row[move])])
+    staying = further_price(dual, target, tick + 1, ready)
+    return moving + staying + fees_of(dual, robot, target, tick, ready)
 
 
 @compiled
-def settle(market: Market, robot: int, best: int) -> int:
+def settle(dual: Dual, robot: int, best: int) -> int:
     """Search for a way that costs less than the best known, and take it; the least priced cost."""
-    requests = market.requests
-    scratch = market.scratch
+    requests = dual.requests
+    scratch = dual.scratch
     start = int(requests.start[robot])
     release = int(requests.release[robot])
     earliest = int(requests.earliest[robot])
     rest = requests.rest[robot]
-    least = market.charges.least[robot]
-    tick = release + duration_of(market, robot, start)
+    least = dual.charges.least[robot]
+    tick = release + duration_of(dual, robot, start)
     delay = tick + int(rest[start]) - earliest
-    if delay >= market.delays:
+    if delay >= dual.delays:
         return best
-    size = market.graph.duration.size
+    size = dual.graph.duration.size
     place = tick % scratch.head.size
-    paid = price_on_way(market, robot, start, release, tick)
+    paid = price_on_way(dual, robot, start, release, tick)
     scratch.generation[0] = int(scratch.generation[0]) + scratch.parent.size
     pending = reach(scratch, place, place * size + start, (tick - release) * size + start, paid, NONE)
     found = NONE
@@ -276,16 +276,16 @@ def settle(market: Market, robot: int, best: int) -> int:
             following = int(scratch.following[slot])
             if paid + int(least[tick + int(rest[here]) - earliest]) < best:
                 if rest[here] == 0:  # a move from here enters the goal
-                    price = arrival_price(market, robot, here, tick, paid)
+                    price = arrival_price(dual, robot, here, tick, paid)
                     if price < best:
                         best = price
                         found = node
                 scratch.steps[0] = int(scratch.steps[0]) + 1
-                pending += leave(market, robot, node, tick, paid)
+                pending += leave(dual, robot, node, tick, paid)
             slot = following
         tick += 1
     if found != NONE:
-        take_way(market, robot, found)
+        take_way(dual, robot, found)
     return best
 
 
@@ -314,28 +314,28 @@ def reach(scratch: Scratch, place: int, slot: int, node: int, paid: int, parent:
 
 
 @compiled
-def leave(market: Market, robot: int, node: int, tick: int, paid: int) -> int:
+def leave(dual: Dual, robot: int, node: int, tick: int, paid: int) -> int:
     """Wait or move from a node, also through the goal, to come late: how many new nodes are reached."""
-    graph = market.graph
-    rest = market.requests.rest[robot]
-    earliest = int(market.requests.earliest[robot])
-    scratch = market.scratch
+    graph = dual.graph
+    rest = dual.requests.rest[robot]
+    earliest = int(dual.requests.earliest[robot])
+    scratch = dual.scratch
     size = graph.duration.size
-    here = node - (tick - int(market.requests.release[robot])) * size
+    here = node - (tick - int(dual.requests.release[robot])) * size
     now = tick % scratch.head.size
     reached = 0
-    if tick + int(rest[here]) - earliest + 1 < market.delays:
+    if tick + int(rest[here]) - earliest + 1 < dual.delays:
         place = place_after(scratch, now, 1)
-        waited = paid + int(market.prices.waiting[min(tick, market.horizon)][int(market.limits.row[here])])
-        waited += fees_of(market, robot, here, tick, tick + 1)
+        waited = paid + int(dual.prices.waiting[min(tick, dual.horizon)][int(dual.limits.row[here])])
+        waited += fees_of(dual, robot, here, tick, tick + 1)
         reached += reach(scratch, place, place * size + here, node + size, waited, node)
     for move in range(int(graph.first[here]), int(graph.first[here + 1])):
         target = int(graph.target[move])
         if rest[target] != NONE:
-            ready = tick + duration_of(market, robot, target)
+            ready = tick + duration_of(dual, robot, target)
             delay = ready + int(rest[target]) - earliest
-            if delay < market.delays:
-                moved = paid + entry_price(market, robot, move, tick, ready)
+            if delay < dual.delays:
+                moved = paid + entry_price(dual, robot, move, tick, ready)
                 place = place_after(scratch, now, ready - tick)
                 after = node - here + (ready - tick) * size + target
                 reached += reach(scratch, place, place * size + target, after, moved, node)
@@ -343,73 +343,73 @@ def leave(market: Market, robot: int, node: int, tick: int, paid: int) -> int:
 
 
 @compiled
-def arrival_price(market: Market, robot: int, here: int, tick: int, paid: int) -> int:
+def arrival_price(dual: Dual, robot: int, here: int, tick: int, paid: int) -> int:
     """The priced cost of moving to the goal now; endless if no move leads there."""
-    graph = market.graph
-    goal = int(market.requests.goal[robot])
+    graph = dual.graph
+    goal = int(dual.requests.goal[robot])
     for move in range(int(graph.first[here]), int(graph.first[here + 1])):
         if graph.target[move] == goal:
-            delay = tick - int(market.requests.earliest[robot])
-            arrived = paid + move_price(market, move, tick) + goal_price(market, robot, tick)
-            return arrived + int(market.charges.cost[robot][delay])
+            delay = tick - int(dual.requests.earliest[robot])
+            arrived = paid + move_price(dual, move, tick) + goal_price(dual, robot, tick)
+            return arrived + int(dual.charges.cost[robot][delay])
     return ENDLESS
 
 
 @compiled
-def begins_stay(market: Market, node: int) -> bool:
+def begins_stay(dual: Dual, node: int) -> bool:
     """Whether the way enters the node's resource there, rather than waits in it."""
-    parent = int(market.scratch.parent[node])
-    return parent == NONE or (node - parent) % market.graph.duration.size != 0
+    parent = int(dual.scratch.parent[node])
+    return parent == NONE or (node - parent) % dual.graph.duration.size != 0
 
 
 @compiled
-def tick_of(market: Market, robot: int, node: int) -> int:
+def tick_of(dual: Dual, robot: int, node: int) -> int:
     """The tick of a node of the robot."""
-    return int(market.requests.release[robot]) + node // market.graph.duration.size
+    return int(dual.requests.release[robot]) + node // dual.graph.duration.size
 
 
 @compiled
-def take_way(market: Market, robot: int, last: int) -> None:
+def take_way(dual: Dual, robot: int, last: int) -> None:
     """Write the way that arrives from the node."""
-    count_way(market, robot, -1)
-    resources = market.ways.resource[robot]
-    enters = market.ways.enter[robot]
-    parent = market.scratch.parent
+    count_way(dual, robot, -1)
+    resources = dual.ways.resource[robot]
+    enters = dual.ways.enter[robot]
+    parent = dual.scratch.parent
     visits = 1
     node = last
     while node != NONE:
-        visits += 1 if begins_stay(market, node) else 0
+        visits += 1 if begins_stay(dual, node) else 0
         node = int(parent[node])
-    market.ways.length[robot] = visits
-    resources[visits - 1] = int(market.requests.goal[robot])
-    enters[visits - 1] = tick_of(market, robot, last)
+    dual.ways.length[robot] = visits
+    resources[visits - 1] = int(dual.requests.goal[robot])
+    enters[visits - 1] = tick_of(dual, robot, last)
     visit = visits - 2
     node = last
     while node != NONE:
-        if begins_stay(market, node):
-            here = node % market.graph.duration.size
+        if begins_stay(dual, node):
+            here = node % dual.graph.duration.size
             resources[visit] = here
-            enters[visit] = tick_of(market, robot, node) - duration_of(market, robot, here)
+            enters[visit] = tick_of(dual, robot, node) - duration_of(dual, robot, here)
             visit -= 1
         node = int(parent[node])
-    count_way(market, robot, 1)
+    count_way(dual, robot, 1)
 
 
 @entry
-def see_ways(native: Native[Market]) -> None:
+def see_ways(native: Native[Dual]) -> None:
     """Fill in where the ways have the robots at each tick."""
-    market = market_at(native)
-    place = market.charges.place
-    for robot in range(market.requests.start.size):
+    dual = dual_at(native)
+    place = dual.charges.place
+    for robot in range(dual.requests.start.size):
         tick = 0
         here = NONE
-        for visit in range(int(market.ways.length[robot])):
-            enter = min(int(market.ways.enter[robot][visit]), market.horizon)
+        for visit in range(int(dual.ways.length[robot])):
+            enter = min(int(dual.ways.enter[robot][visit]), dual.horizon)
             while tick < enter:
                 place[robot][tick] = here
                 tick += 1
-            is_last = visit + 1 == market.ways.length[robot]
-            here = market.graph.duration.size if is_last else int(market.ways.resource[robot][visit])
-        while tick < market.horizon:
+            is_last = visit + 1 == dual.ways.length[robot]
+            here = dual.graph.duration.size if is_last else int(dual.ways.resource[robot][visit])
+        while tick < dual.horizon:
             place[robot][tick] = here
             tick += 1

@@ -127,8 +127,8 @@ class Scratch(NamedTuple):
     steps: Longs
 
 
-class Market(NamedTuple):
-    """All arrays that the compiled functions read and write; nodes have delays below `delays`.
+class Dual(NamedTuple):
+    """The Lagrangian dual: all arrays that the compiled functions read and write; nodes have delays below `delays`.
 
     It is even if all stays of a robot take equally long.
     """
@@ -148,137 +148,137 @@ class Market(NamedTuple):
     is_even: bool
 
 
-market_at = dereference(Market)
+dual_at = dereference(Dual)
 
 
 @compiled
-def duration_of(market: Market, robot: int, resource: int) -> int:
+def duration_of(dual: Dual, robot: int, resource: int) -> int:
     """The least ticks of the robot's stay."""
-    return int(market.requests.pace[robot]) * int(market.graph.duration[resource])
+    return int(dual.requests.pace[robot]) * int(dual.graph.duration[resource])
 
 
 @compiled
-def stay_price(market: Market, resource: int, enter: int, leave: int) -> int:
+def stay_price(dual: Dual, resource: int, enter: int, leave: int) -> int:
     """The price of a stay in [enter, leave)."""
-    stay = market.prices.stay[int(market.limits.row[resource])]
-    at_first = int(stay[min(enter + 1, market.horizon)]) - int(stay[min(enter, market.horizon)])
-    return at_first + further_price(market, resource, enter + 1, leave)
+    stay = dual.prices.stay[int(dual.limits.row[resource])]
+    at_first = int(stay[min(enter + 1, dual.horizon)]) - int(stay[min(enter, dual.horizon)])
+    return at_first + further_price(dual, resource, enter + 1, leave)
 
 
 @compiled
-def further_price(market: Market, resource: int, tick: int, leave: int) -> int:
+def further_price(dual: Dual, resource: int, tick: int, leave: int) -> int:
     """The price of staying in [tick, leave) in a resource that the robot is in just before the tick, and later ones."""
     if tick >= leave:
         return 0
-    row = int(market.limits.row[resource])
-    stay = market.prices.stay[row]
-    across = market.prices.across[row]
-    begin = min(tick, market.horizon)
-    end = min(leave, market.horizon)
+    row = int(dual.limits.row[resource])
+    stay = dual.prices.stay[row]
+    across = dual.prices.across[row]
+    begin = min(tick, dual.horizon)
+    end = min(leave, dual.horizon)
     return int(stay[end]) - int(stay[begin]) + int(across[end]) - int(across[begin])
 
 
 @compiled
-def move_price(market: Market, move: int, tick: int) -> int:
+def move_price(dual: Dual, move: int, tick: int) -> int:
     """The price of a move at the tick."""
-    exchanges = market.exchanges
-    back = int(market.prices.back[move])
-    if tick >= market.horizon or back == NONE:
+    exchanges = dual.exchanges
+    back = int(dual.prices.back[move])
+    if tick >= dual.horizon or back == NONE:
         return 0
     return int(exchanges.price[int(exchanges.row[move])][tick]) + int(exchanges.price[int(exchanges.row[back])][tick])
 
 
 @compiled
-def goal_price(market: Market, robot: int, tick: int) -> int:
+def goal_price(dual: Dual, robot: int, tick: int) -> int:
     """The price of the last stay of a robot that arrives at the tick."""
-    goal = int(market.requests.goal[robot])
-    leave = market.horizon if market.parks else tick + duration_of(market, robot, goal)
-    return stay_price(market, goal, tick, leave)
+    goal = int(dual.requests.goal[robot])
+    leave = dual.horizon if dual.parks else tick + duration_of(dual, robot, goal)
+    return stay_price(dual, goal, tick, leave)
 
 
 @compiled
-def move_between(market: Market, source: int, target: int) -> int:
+def move_between(dual: Dual, source: int, target: int) -> int:
     """The number of the move."""
-    move = int(market.graph.first[source])
-    while market.graph.target[move] != target:
+    move = int(dual.graph.first[source])
+    while dual.graph.target[move] != target:
         move += 1
     return move
 
 
 @compiled
-def cells_of(market: Market, is_exchange: bool) -> Cells:
+def cells_of(dual: Dual, is_exchange: bool) -> Cells:
     """The cells of exchanges, or those of constraints."""
-    return market.exchanges if is_exchange else market.limits
+    return dual.exchanges if is_exchange else dual.limits
 
 
 @compiled
-def change_price(market: Market, is_exchange: bool, number: int, tick: int, more: int) -> None:
+def change_price(dual: Dual, is_exchange: bool, number: int, tick: int, more: int) -> None:
     """Raise the price of a constraint with a row, or of the exchange row of a move from a resource with a row."""
-    cells = cells_of(market, is_exchange)
+    cells = cells_of(dual, is_exchange)
     price = cells.price[int(cells.row[number])]
     price[tick] = int(price[tick]) + more
     if is_exchange:
-        change_exchange(market, number, tick, more)
+        change_exchange(dual, number, tick, more)
         return
-    graph = market.graph
-    market.prices.worth[0] = int(market.prices.worth[0]) + more * int(graph.room[number])
+    graph = dual.graph
+    dual.prices.worth[0] = int(dual.prices.worth[0]) + more * int(graph.room[number])
     group = number - graph.duration.size
     if group < 0:
-        change_present(market, number, tick, more)
+        change_present(dual, number, tick, more)
     else:
         for k in range(int(graph.members_first[group]), int(graph.members_first[group + 1])):
-            change_present(market, int(graph.member[k]), tick, more)
+            change_present(dual, int(graph.member[k]), tick, more)
 
 
 @compiled
-def change_present(market: Market, here: int, tick: int, more: int) -> None:
+def change_present(dual: Dual, here: int, tick: int, more: int) -> None:
     """Raise what robots in the resource pay at the tick."""
-    prices = market.prices
-    row = int(market.limits.row[here])
+    prices = dual.prices
+    row = int(dual.limits.row[here])
     present = prices.present[row]
     present[tick] = int(present[tick]) + more
-    change_waiting(market, row, tick, more)
+    change_waiting(dual, row, tick, more)
     entering = prices.entering[tick]
-    for k in range(int(market.graph.backward_first[here]), int(market.graph.backward_first[here + 1])):
-        row = int(market.exchanges.row[int(prices.into[k])])
+    for k in range(int(dual.graph.backward_first[here]), int(dual.graph.backward_first[here + 1])):
+        row = int(dual.exchanges.row[int(prices.into[k])])
         entering[row] = int(entering[row]) + more
 
 
 @compiled
-def change_exchange(market: Market, move: int, tick: int, more: int) -> None:
+def change_exchange(dual: Dual, move: int, tick: int, more: int) -> None:
     """Raise what robots pay that make a move or its move back at the tick, or stay in its source."""
-    prices = market.prices
+    prices = dual.prices
     back = int(prices.back[move])
-    here = int(market.graph.target[back])
-    row = int(market.limits.row[here])
+    here = int(dual.graph.target[back])
+    row = int(dual.limits.row[here])
     crossing, entering = prices.crossing[row], prices.entering[tick]
     crossing[tick] = int(crossing[tick]) + more
-    prices.worth[0] = int(prices.worth[0]) + more * int(market.graph.capacity[here])
-    change_waiting(market, row, tick, more)
+    prices.worth[0] = int(prices.worth[0]) + more * int(dual.graph.capacity[here])
+    change_waiting(dual, row, tick, more)
     for each in (move, back):
-        row = int(market.exchanges.row[each])
+        row = int(dual.exchanges.row[each])
         entering[row] = int(entering[row]) + more
 
 
 @compiled
-def change_waiting(market: Market, row: int, tick: int, more: int) -> None:
+def change_waiting(dual: Dual, row: int, tick: int, more: int) -> None:
     """Raise what robots pay that wait in the resource of the row."""
-    waiting = market.prices.waiting[tick]
+    waiting = dual.prices.waiting[tick]
     waiting[row] = int(waiting[row]) + more
-    market.prices.changed[row] = min(int(market.prices.changed[row]), tick)
+    dual.prices.changed[row] = min(int(dual.prices.changed[row]), tick)
 
 
 @entry
-def add_up(native: Native[Market]) -> int:
+def add_up(native: Native[Dual]) -> int:
     """Bring the sums of the prices up to date: the sum of all prices times their capacities."""
-    market = market_at(native)
-    prices = market.prices
+    dual = dual_at(native)
+    prices = dual.prices
     for row in range(prices.changed.size):
-        if prices.changed[row] < market.horizon:
+        if prices.changed[row] < dual.horizon:
             stay, across = prices.stay[row], prices.across[row]
             present, crossing = prices.present[row], prices.crossing[row]
-            for tick in range(int(prices.changed[row]), market.horizon):
+            for tick in range(int(prices.changed[row]), dual.horizon):
                 stay[tick + 1] = int(stay[tick]) + int(present[tick])
                 across[tick + 1] = int(across[tick]) + int(crossing[tick])
-            prices.changed[row] = market.horizon
+            prices.changed[row] = dual.horizon
     return int(prices.worth[0])
