@@ -134,6 +134,11 @@ class PlannedFleet:
             encoding.forget_stops(self.state, index)
         return tuple(map(self._ids.__getitem__, robots))
 
+    def remove(self, robot: int) -> None:
+        """Forget a robot, as `dismiss` does, that may be in the way of others still."""
+        self._ask_again()
+        self.dismiss([robot])
+
     def withdraw(self, robots: Sequence[int] | Ints) -> None:
         """Take the plans of robots away, of those that have one."""
         gone = np.array(robots, np.int32)

@@ -113,7 +113,7 @@ class Client:
     def request(self) -> None:
         """Ask something, and judge the answer."""
         kinds: tuple[Callable[[], object], ...] = (self.add, self.add, self.add, self.assign, self.assign)
-        kinds = (*kinds, self.advance, self.trace, self.polish, self.rest, self.forget)
+        kinds = (*kinds, self.advance, self.trace, self.remove, self.polish, self.rest, self.forget)
         kinds = (*kinds, self.hostile, self.past, self.twice, self.wrong)
         if self.draw.happens(1500):
             self.server.vanish(self.draw.one_of((b"", b'{"id": 1, "op": "fleet/ad', b"x")))
@@ -177,7 +177,7 @@ class Client:
         assert (robot.id in result["unplanned"]) == (robot.id not in self.plans)
 
     def assign(self) -> None:
-        going = [robot for robot in self.instance.robots if not has_ended(self.plans[robot.id], self.now)]
+        going = [robot for robot in self.instance.robots if not has_ended(self.plans[robot.id], self.now + 1)]
         if not going:
             self.add()
             return
@@ -212,6 +212,14 @@ class Client:
                 return
         self.advance()
 
+    def remove(self) -> None:
+        if self.plans:
+            robot = self.draw.one_of([*self.plans])
+            answer = self.server.ask(op="fleet/remove", fleet="f", robot=robot, now=self.now)
+            answer["result"]["left"].remove(robot)
+            del self.plans[robot]
+            assert self.accept(answer)["plans"] == []
+
     def polish(self) -> None:
         self.accept(self.server.ask(op="fleet/polish", fleet="f", iterations=3, seed=self.draw.between(0, 9)))
 
@@ -239,7 +247,8 @@ class Client:
             {"resource": place, "service": service if place in (robot.goal, "nowhere") else -1} for place in places
         ]
         answer = self.server.ask(op="fleet/assign", fleet="f", robot=robot.id, stops=stops, now=self.now)
-        self.refuse(answer, "fleet/robot" if has_ended(self.plans[robot.id], self.now) else "instance/stops")
+        may_have_left = ("fleet/robot",) if has_ended(self.plans[robot.id], self.now + 1) else ()
+        self.refuse(answer, "instance/stops", *may_have_left)
 
     def rest(self) -> tuple[Instance, Solution]:
         result = self.server.ask(op="fleet/rest", fleet="f")["result"]

@@ -131,6 +131,7 @@ REQUESTS: dict[str, Document] = {
         "fleet": "f",
         "trace": {"format": "carproof-trace/1", "now": 2, "plans": [{"robot": "r1", "visits": [["a", 0, None]]}]},
     },
+    "fleet/remove": {"fleet": "f", "robot": "r1", "now": 2},
     "fleet/polish": {"fleet": "f", "iterations": 3},
     "fleet/rest": {"fleet": "f"},
     "fleet/forget": {"fleet": "f"},

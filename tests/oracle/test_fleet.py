@@ -103,6 +103,11 @@ def test_news_of_every_kind_has_the_plans_of_whole_solutions(part: int) -> None:
                 gone = (id for id in whole.order if id not in fleet.instance.robot)
                 plans = tuple(after.get(plan.robot, plan) for plan in whole.plans)
                 whole = replace(whole, plans=plans, order=(*gone, *fleet.solution.order))
+            if whole.plans and draw.happens(4) and fleet.instance.robots:
+                removed = draw.one_of(fleet.instance.robots).id
+                assert fleet.remove(removed).plans == ()
+                plans = tuple(plan for plan in whole.plans if plan.robot != removed)
+                whole = replace(whole, plans=plans, order=tuple(id for id in whole.order if id != removed))
             assert check(*fleet.rest()).valid
         known = fleet.rest()
         fleet.forget()
@@ -207,6 +212,39 @@ def test_news_that_make_another_robot_appear_late_name_no_plan() -> None:
     with pytest.raises(Refusal) as refusal:
         fleet.trace(Trace(3, (Plan("x", (Visit("b", 0, None),)),)))
     assert (refusal.value.rule, refusal.value.path) == ("plan/start", "$.plans")
+
+
+def test_who_leaves_at_the_tick_after_a_trace_gets_no_further_stops() -> None:
+    fleet = Fleet(lane())
+    fleet.add(Robot("r", "a", "c"))
+    fleet.trace(Trace(2, ()))
+    with pytest.raises(Refusal) as refusal:
+        fleet.assign("r", [Stop("h")])
+    assert refusal.value.rule == "fleet/robot"
+    assert check(fleet.instance, fleet.solution).valid
+
+
+def test_a_robot_that_is_removed_is_in_nobodys_way_any_more() -> None:
+    fleet = Fleet(replace(lane(after="park"), robots=(Robot("x", "b", "f"), Robot("y", "a", "e"))))
+    fleet.trace(Trace(3, (Plan("x", (Visit("b", 0, None),)),)))
+    before = plan_of(fleet, "y")
+    change = fleet.remove("x", 5)
+    assert (change.now, change.plans, change.left) == (5, (), ("x",))
+    assert fleet.solution.plans == (before,)
+    assert check(*fleet.rest()).valid
+    assert fleet.add(Robot("x", "h", "f", release=6), audit=True).unplanned == (), (
+        "the id is free, and so is its history"
+    )
+    fleet.trace(Trace(6, (Plan("x", (Visit("h", 6, None),)),)))
+    fleet.remove("y", 7)
+    twin = Fleet(*fleet.rest(), now=7)
+    late = Robot("z", "a", "e", release=8)
+    assert fleet.add(late).plans == twin.add(late).plans != ()
+
+
+def test_who_has_left_by_the_tick_of_its_removal_has_left_once() -> None:
+    fleet = Fleet(row())
+    assert fleet.remove("x", 30).left == ("x", "y")
 
 
 def test_who_was_told_to_stand_somewhere_has_not_left_by_then() -> None:
@@ -333,6 +371,9 @@ def news() -> dict[str, Callable[[Fleet], Change]]:
         "fleet/now add": lambda fleet: fleet.add(robot, now=1),
         "fleet/now release": lambda fleet: fleet.add(replace(robot, release=1)),
         "fleet/now trace": lambda fleet: fleet.trace(Trace(1, (stays,))),
+        "fleet/now remove": lambda fleet: fleet.remove("x", 1),
+        "fleet/robot remove": lambda fleet: fleet.remove("gone", 30),
+        "document/shape remove": lambda fleet: fleet.remove(None),  # type: ignore[arg-type]
         "fleet/robot add": lambda fleet: fleet.add(replace(robot, id="x")),
         "limit/ticks advance": lambda fleet: fleet.advance(2**40),
         "fleet/now assign": lambda fleet: fleet.assign("x", [Stop("a")], 1),

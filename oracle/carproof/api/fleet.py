@@ -4,7 +4,7 @@ from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from msgspec import structs
 
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet
     from carp_optimized.jit.kinds import Ints
 
+T = TypeVar("T")
 NOBODY: Mapping[RobotId, Robot] = MappingProxyType({})
 MOST_ROBOTS = 10_000
 MOST_STOPS = 64
@@ -41,8 +42,8 @@ NOT_BACK = Code(
 )
 OWN_ROBOTS = Code(
     "fleet/robot",
-    "A robot to add has an id that no robot of the fleet has; one that gets stops is in the fleet, and so are those of "
-    "a trace.",
+    "A robot to add has an id that no robot of the fleet has; one that gets stops or is removed is in the fleet, "
+    "and so are those of a trace.",
     DESIGN,
 )
 FEW_ROBOTS = Code(
@@ -245,18 +246,43 @@ class Fleet:
         """
         now = self._tick(now)
         require_shape(robot, RobotId, "$.robot")
-        before = self._known.robots.get(robot)
-        if before is None or has_ended(self._known.plans[robot].plan, now):
-            message = f"it must be a robot of the fleet that has not left by {now}, and {robot!r} is not"
+        before, at = self._known.robots.get(robot), self._known.from_tick(now)
+        if before is None or has_ended(self._known.plans[robot].plan, at):
+            message = f"it must be a robot of the fleet that has not left by {at}, and {robot!r} is not"
             raise Refusal("request", "$.robot", OWN_ROBOTS.id, message)
         further = further_stops(self._known.empty, before, stops)
         with about_stops(0):
             self._made().require_robots((further,))
         self._require_little("$.stops", len(further.stops))
-        core, plan, at = self._taken(), self._known.plans[robot].plan, self._known.from_tick(now)
+        core, plan = self._taken(), self._known.plans[robot].plan
         if core.assign(further, before, plan, at, self._planner, self._known.numbers[robot]):
             return self._take_over(core, now, audit, new={robot: further})
         return self._take_over(core, now, audit, unplanned=[robot])
+
+    def remove(self, robot: RobotId, now: int | None = None) -> Change:
+        """Take a robot off the floor, one that has broken down for example; from the tick now on its places are free.
+
+        No other plan changes; `polish` makes use of the room. Raises `Refusal` for a tick that has passed, and for a
+        robot that is not there.
+        """
+        now = self._tick(now)
+        self._require_known(robot, "$.robot")
+        change = self.advance(now)
+        if robot in change.left:
+            return change
+        core, known = self._taken(), self._known
+        core.remove(core.index(robot))
+        places, ids = core.places
+        self._known = replace(
+            known,
+            robots=_without(robot, known.robots),
+            plans=_without(robot, known.plans),
+            places=places,
+            ids=ids,
+            numbers=_without(robot, known.numbers),
+        )
+        self._core = core
+        return replace(change, left=(*change.left, robot))
 
     def forget(self) -> None:
         """Forget what is done by the tick `now`: robots start in the visits under way, as of when they entered them."""
@@ -283,9 +309,7 @@ class Fleet:
         require_shape(trace, Trace)
         now = self._tick(trace.now)
         for place, plan in enumerate(trace.plans):
-            if plan.robot not in self._known.robots:
-                message = f"it must be a robot of the fleet, which has no {plan.robot!r}"
-                raise Refusal("request", f"$.plans[{place}].robot", OWN_ROBOTS.id, message)
+            self._require_known(plan.robot, f"$.plans[{place}].robot")
         compile_what_is_kept()
         from carp_optimized.execution.following import held_up, retime  # noqa: PLC0415 - numba is slow to load
 
@@ -336,6 +360,12 @@ class Fleet:
 
         refuse_tick("$.now", now)
         return now
+
+    def _require_known(self, robot: RobotId, path: str) -> None:
+        require_shape(robot, RobotId, path)
+        if robot not in self._known.robots:
+            message = f"it must be a robot of the fleet, which has no {robot!r}"
+            raise Refusal("request", path, OWN_ROBOTS.id, message)
 
     def _require_new(self, robots: tuple[Robot, ...], now: int) -> None:
         if not robots:
@@ -418,6 +448,10 @@ class Fleet:
         found = _audited(known.solution.plans if told is None else told, after, changed) if audit else None
         self._known, self._core = after, core
         return Change(now, changed, tuple(unplanned), left, found)
+
+
+def _without(robot: RobotId, of: Mapping[RobotId, T]) -> Mapping[RobotId, T]:
+    return {id: value for id, value in of.items() if id != robot}
 
 
 def _audited(before: Sequence[Plan], known: _Known, changed: Sequence[PlanColumns]) -> Audit:

@@ -70,6 +70,7 @@ _HANDLERS: tuple[Callable[..., object], ...] = (
     keeping.fleet_assign,
     keeping.fleet_advance,
     keeping.fleet_trace,
+    keeping.fleet_remove,
     keeping.fleet_polish,
     keeping.fleet_rest,
     keeping.fleet_forget,

@@ -100,6 +100,15 @@ def fleet_assign(
     return _document(kept, kept.assign(robot, all_converted(stops, Stop), now, audit=audit))
 
 
+def fleet_remove(fleet: str, robot: RobotId, now: int | None = None, *, session: Session) -> FleetDocument:
+    """Take a robot off the floor: it has `left`, and from the tick now on its places are free. No plan changes.
+
+    `now` is the tick of the news before unless given.
+    """
+    kept = _named(fleet, session)
+    return _document(kept, kept.remove(robot, now))
+
+
 def fleet_forget(fleet: str, session: Session) -> FleetDocument:
     """Forget what is done by now: stops that are served, and all visits but those under way and to come."""
     kept = _named(fleet, session)
