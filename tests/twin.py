@@ -5,7 +5,8 @@ from dataclasses import replace
 from itertools import pairwise
 
 from carp_reference.time_expanded import Table, entries, search, table_of, visits_of
-from carp_spec import Instance, Plan, RobotId, Visit, has_ended, stops_served
+from carp_spec import Instance, Plan, RobotId, Visit, has_ended
+from carp_spec.plan_rules import stops_served
 
 
 def find_plan_by_ticks(

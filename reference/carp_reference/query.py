@@ -11,7 +11,8 @@ from itertools import pairwise
 
 from carp_reference.context import Context, context_of
 from carp_reference.problem import Problem
-from carp_spec import Instance, Plan, ResourceId, RobotId, Visit, has_ended, stops_served
+from carp_spec import Instance, Plan, ResourceId, RobotId, Visit, has_ended
+from carp_spec.plan_rules import stops_served
 from carp_spec.query_rules import expansion_key
 from carp_spec.windows import Window, stay_fits
 

@@ -1,7 +1,7 @@
 """The specification of context-aware route planning: model, rules, checker."""
 
 from carp_spec.check import Verdict, check_update, judge, violations_of
-from carp_spec.inputs.costs import plan_cost, total_cost
+from carp_spec.inputs.costs import plan_cost, stops_served, total_cost
 from carp_spec.model import (
     AfterGoal,
     Group,
@@ -17,7 +17,7 @@ from carp_spec.model import (
     Stop,
     Visit,
 )
-from carp_spec.plan_rules import has_ended, stops_served
+from carp_spec.plan_rules import has_ended
 from carp_spec.planners import (
     Carp,
     FixedPaths,

@@ -43,7 +43,7 @@ from carproof import Delay
 from carproof.formats import named_as, write_foreign_solution
 from carproof.generate import Fleet, Grid, Range, Traits, Warehouse, grid_instance, warehouse_instance
 
-UNLOOKED_AT = ("conforms", "stops_served", "steps", "find")
+UNLOOKED_AT = ("conforms", "steps", "find")
 """The functions that find a fault in any value, and whose values the law has looked at before."""
 RIGHT = Instance(
     ResourceGraph((Resource("a"), Resource("b", 2), Resource("c", x=1, y=2)), (("a", "b"), ("b", "c"))),
@@ -350,6 +350,8 @@ def far_away(x: int) -> Instance:
         (lambda: carproof.give_way(RIGHT, SOLVED, "r", route=[NONE]), "document/shape", "$.route[0]"),
         (lambda: carproof.give_way(RIGHT, SOLVED, "r", route=[]), "plan/start", "$.route"),
         (lambda: carproof.view_map(RIGHT, at=True), "document/shape", "--at"),
+        (lambda: carproof.stops_served(NONE, ()), "document/shape", "$.stops"),
+        (lambda: carproof.stops_served((), NONE), "document/shape", "$.visits"),
         (lambda: carproof.total_cost(RIGHT, SOLVED), "document/shape", "$.plans"),  # type: ignore[arg-type]
         (lambda: carproof.verify_bound(RIGHT, b"{}"), "document/shape", "$"),  # type: ignore[arg-type]
         (lambda: carproof.verify_query(RIGHT, SOLVED, b"{}"), "document/shape", "$"),  # type: ignore[arg-type]

@@ -1,11 +1,11 @@
-"""Costs of plans that may be malformed."""
+"""Costs of plans, and stops that visits serve, where any may be malformed."""
 
 from collections.abc import Sequence
 from typing import cast
 
 from carp_spec import plan_rules
 from carp_spec.inputs.values import require_instance
-from carp_spec.model import Instance, Plan, RobotId, Visit
+from carp_spec.model import Instance, Plan, RobotId, Stop, Visit
 from carp_spec.refusal import Refusal
 from carp_spec.shapes import require_each, require_shape
 
@@ -32,6 +32,16 @@ def makespan(instance: Instance, plans: Sequence[Plan]) -> int:
     """The latest tick at which a plan enters its last visit, 0 without plans; raises `Refusal` as `plan_cost` does."""
     total_cost(instance, plans)
     return max((plan.visits[-1].enter for plan in plans), default=0)
+
+
+def stops_served(stops: Sequence[Stop], visits: Sequence[Visit]) -> int:
+    """How many of the stops the visits have served, in order: each that is left serves the next stop if it can.
+
+    Raises `Refusal` for malformed stops and visits.
+    """
+    require_each(stops, Stop, "$.stops")
+    require_each(visits, Visit, "$.visits")
+    return plan_rules.stops_served(stops, visits)
 
 
 def _cost(instance: Instance, plan: Plan, path: str) -> int:

@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping
 
-from carp_spec import Instance, Plan, stops_served
+from carp_spec import Instance, Plan
+from carp_spec.plan_rules import stops_served
 
 
 def stops_in(instance: Instance, plan: Plan) -> Mapping[int, int]:
