@@ -27,7 +27,7 @@ OPTIONS = ["-x", "-q", "-pno:cacheprovider", "-pno:xdist", "-pno:cov", "-k", "no
 SECONDS = 60
 DOCUMENTS = ("spec/test_described_documents", "verify/test_documents", "oracle/test_schema")
 ALSO = {
-    "carp_spec.check": ("oracle/test_malformed_values",),
+    "carp_spec.check": ("spec/test_quick_check", "oracle/test_malformed_values"),
     "carp_spec.instance_rules": ("spec/test_plan_rules", "oracle/test_assign"),
     "carp_spec.plan_rules": ("spec/test_check", "verify/test_rules_as_properties"),
     "carp_spec.joint_rules": ("spec/test_check",),
