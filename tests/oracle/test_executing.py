@@ -151,12 +151,12 @@ def test_nobody_switches_to_park_in_the_way() -> None:
 
 
 def test_python_has_what_the_commands_about_executions_have() -> None:
-    instance, plans = (read_instance(Path("train.json").read_bytes()), read_solution(Path("plans.json").read_bytes()))
+    instance, plans = read_instance(Path("train.json").read_bytes()), read_solution(Path("plans.json").read_bytes())
     done = read_trace(json.dumps(trace([["a", 0, None]])).encode())
     assert drive(instance, plans, done, ["r1"]) == ("r1",)
     assert drive(instance, plans, done, []) == ()
     assert retime(instance, plans, done) == engine_named("reference").retime(instance, plans, done)
-    ring, turning = (read_instance(Path("ring.json").read_bytes()), read_solution(Path("turning.json").read_bytes()))
+    ring, turning = read_instance(Path("ring.json").read_bytes()), read_solution(Path("turning.json").read_bytes())
     assert not list(is_acyclic(ring, carproof.untangle(ring, turning).solution))
     assert carproof.untangle(ring, turning, 1e-9).undecided
     assert give_way(ring, turning, "r0").is_first

@@ -59,8 +59,8 @@ class Change:
     """What news changed: the plans that are new or other than before, and who is no longer in the fleet.
 
     `unplanned` found no plan: those that were to be added are not in the fleet, and one that was to get stops keeps
-    those that it had. `left` have vanished by the tick `now`, or a tick before it where following is forbidden, and are
-    not in the fleet. `audit` is the proof, if it was asked for.
+    those that it had. `left` are in the fleet no more: they were removed, or have vanished by the tick `now`, and by
+    the tick before it where following is forbidden. `audit` is the proof, if it was asked for.
     """
 
     now: int
@@ -388,7 +388,9 @@ class Fleet:
     def _require_heard(self, whole: Trace) -> None:
         """Raise `Refusal` where a trace of all robots contradicts an earlier one that named the robot."""
         for number, plan in enumerate(whole.plans):
-            heard = self._known.heard.get(plan.robot, -1)
+            heard = self._known.heard.get(plan.robot)
+            if heard is None:
+                continue
             both = Trace(heard, (self._known.plans[plan.robot].plan, plan))
             before, again = (each.visits for each in until(both, heard).plans)
             for old, new in zip(before, again, strict=False):  # who has gone less far has not left the last visit

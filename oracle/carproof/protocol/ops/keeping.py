@@ -35,7 +35,7 @@ class FleetDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The tick, and the plans that are new or other than before.
 
     `unplanned` is the robot that found no plan: one to be added is not in the fleet, one to get stops has those of
-    before. `left` are robots that have vanished and are not in the fleet. `audit`, where it was asked for, has the
+    before. `left` are robots that have vanished or were removed. `audit`, where it was asked for, has the
     robots with such plans.
     """
 
