@@ -1,17 +1,18 @@
 """Finds a good lower bound on the total cost, with a certificate that `carp_verify.bound.verify` checks.
 
-This is Lagrangian relaxation. Step by step, prices rise where the robots' cheapest ways exceed a capacity, and fall
-where they use less than it (`carp_optimum.lagrangian.price_steps`). When that gains nothing more, deadlines are added
-(`carp_optimum.claims.pair_search`, `carp_optimum.claims.deadline_search`). The search aims a little above the best
-bound known, and closer to it after each failure. Source: the target level method of Goffin and Kiwiel 1999, over the
-Lagrangian relaxation of all rules of plans together.
+This is Lagrangian relaxation. Where the robots' ways are short in all, a linear programme gives the best prices
+(`carp_optimum.lagrangian.column_generation`). Elsewhere prices rise step by step where the robots' cheapest ways exceed
+a capacity, and fall where they use less than it (`carp_optimum.lagrangian.price_steps`). When that gains nothing more,
+deadlines are added (`carp_optimum.claims.pair_search`, `carp_optimum.claims.deadline_search`). The steps aim a little
+above the best bound known, and closer to it after each failure. Source: the target level method of Goffin and Kiwiel
+1999, over the Lagrangian relaxation of all rules of plans together.
 """
 
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from time import monotonic_ns
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from carp_optimum.sat.solver import Deadline, TimeOver
 from carp_spec import Instance
@@ -22,6 +23,9 @@ from carp_spec.inputs.values import require_instance
 from carp_spec.limits import goals_stand_alone
 
 if TYPE_CHECKING:
+    from carp_optimum.claims.deadline_search import DeadlineSearch
+    from carp_optimum.claims.pair_search import SightSearch
+    from carp_optimum.lagrangian.column_generation import ColumnGeneration
     from carp_optimum.lagrangian.price_search import PriceSearch
 
 SCALE = 1 << 16
@@ -33,11 +37,17 @@ ROUGH_AIM = SCALE >> 4
 LARGE = 16384  # parts of the best bound: the last aim before new claims, where that is more than the rough one
 FINE_AIM = SCALE >> 10
 LEAST_RISE = 500  # one part of the bound: what sights must raise it by to be searched for again at once
-FIRST_PARTS, ROUGH_PARTS, PROVED_PARTS, PARTS = 1, 13, 15, 16
+STEP_PARTS, PROGRAMME_PARTS, PARTS = (2, 26, 30), (6, 29, 31), 32
 """Parts of the time: prices climb alone, claims are searched for, the last ones are proved, prices alone are refined.
 
-On a spanning tree prices alone still climb after a quarter of a minute, but with claims they climb faster.
+The first are those of steps, the second those of a linear programme, which is given up if it is not solved in its first
+part. On a spanning tree prices alone still climb by steps after a quarter of a minute, but with claims faster.
 """
+MOST_TICKS = 5000
+"""Ticks of the shortest ways of all robots, beyond which it is not tried to solve a linear programme."""
+LEAST_GAIN = SCALE >> 1
+"""Where a round's claims raise the bound by less, groups of robots and claims about more ticks are looked at too."""
+IDLE_GAIN, IDLE_ROUNDS = SCALE >> 4, 6  # rounds that gain less, one after the other, end the search
 WAYS_AT_END = 3
 """How often the ways of all robots are still looked for when the time is over, so that it is over before."""
 
@@ -94,57 +104,129 @@ def _by_prices(
     from carp_optimum.claims.pair_search import SightSearch  # noqa: PLC0415
     from carp_optimum.lagrangian.price_search import PriceSearch  # noqa: PLC0415
 
-    first = _limit(seconds, steps, FIRST_PARTS, clock)
-    rough = _limit(seconds, steps, ROUGH_PARTS, clock)
-    proved = _limit(seconds, None, PROVED_PARTS, clock)
-    end = _limit(seconds, steps, PARTS, clock, lambda: WAYS_AT_END * search.longest)
-    search = PriceSearch(instance, SCALE, clock)
-    search.within = lambda: end(0)
-    deadlines = DeadlineSearch(search)
-    sights = SightSearch(search)
-
     def report() -> None:
         on_step(Progress(search.count, -(-search.best // SCALE)))
 
-    def look() -> None:
-        report()
-        rough(search.count)
+    def looking(check: Callable[[int], None]) -> Callable[[], None]:
+        def look() -> None:
+            report()
+            check(search.count)
 
-    def watch() -> None:
-        report()
-        sights.watch(look)
+        return look
 
-    def prove() -> None:
+    def limits(parts: tuple[int, int, int]) -> _Limits:
+        first, rough = (looking(_limit(seconds, steps, each, clock)) for each in parts[:2])
+        return _Limits(first, rough, looking(_limit(seconds, None, parts[2], clock)), looking(end))
+
+    end = _limit(seconds, steps, PARTS, clock, lambda: WAYS_AT_END * search.longest)
+    by_programme, by_steps = limits(PROGRAMME_PARTS), limits(STEP_PARTS)
+    search = PriceSearch(instance, SCALE, clock)
+    search.within = lambda: end(0)
+    sights = SightSearch(search)
+    report()
+    with suppress(TimeOver):
+        claims = DeadlineSearch(search), sights if seen else None
+        is_small = search.shortest <= MOST_TICKS * SCALE
+        if not (is_small and _by_programme(*claims, by_programme)):
+            _by_steps(*claims, by_steps)
+    search.restore()
+    report()
+    return _certificate(search)
+
+
+class _Limits(NamedTuple):
+    """Checks that raise `TimeOver` at the ends of the parts of the time."""
+
+    first: Callable[[], None]
+    rough: Callable[[], None]
+    proved: Callable[[], None]
+    end: Callable[[], None]
+
+
+def _prove(sights: "SightSearch | None", check: Callable[[], None]) -> None:
+    """Prove the claims that have a price, and drop the others."""
+    if sights is not None:
         with suppress(TimeOver):
-            sights.prove(lambda: proved(0))
+            sights.prove(check)
+
+
+def _by_steps(deadlines: "DeadlineSearch", sights: "SightSearch | None", limits: _Limits) -> None:
+    """Climb and add claims in turns; raises `TimeOver` at the end of the time."""
+    search = deadlines.search
+    rough = limits.rough
 
     def last_aim() -> int:
         return max(ROUGH_AIM, search.best // LARGE)
 
     def gain_of_sights() -> int:
-        return min(sights.round(look), search.best // NEXT_AIM) if seen else 0
+        rough()
+        return 0 if sights is None else min(sights.round(rough), search.best // NEXT_AIM)
 
-    report()
+    def watch() -> None:
+        if sights is not None:
+            sights.watch(rough)
+
     with suppress(TimeOver):
         gain = min(search.best // FIRST_AIM, max(search.best // LARGE_FIRST, LARGE_AIM))
-        if seen:
+        if sights is not None:
             with suppress(TimeOver):
-                search.climb(gain, last_aim(), lambda: first(search.count), report)
+                search.climb(gain, last_aim(), limits.first)
         by_sights = gain_of_sights()
         while gain > 0:
             before = search.best
             if by_sights > 0:
-                search.roam(by_sights // 4, last_aim(), lambda: rough(search.count), watch)
-            search.climb(by_sights or gain, last_aim(), lambda: rough(search.count), report)
-            prove()
+                search.roam(by_sights // 4, last_aim(), rough, watch)
+            search.climb(by_sights or gain, last_aim(), rough)
+            _prove(sights, limits.proved)
             fruitless = by_sights > 0 and (search.best - before) * LEAST_RISE < search.best
             by_sights = 0 if fruitless else gain_of_sights()
-            gain = by_sights or min(deadlines.round(look), search.best // NEXT_AIM)
-    prove()
+            gain = by_sights or min(deadlines.round(rough), search.best // NEXT_AIM)
+    _prove(sights, limits.proved)
+    search.climb(max(ROUGH_AIM, search.best // FINAL_AIM), FINE_AIM, limits.end)
+
+
+def _by_programme(deadlines: "DeadlineSearch", sights: "SightSearch | None", limits: _Limits) -> bool:
+    """Solve linear programmes and add claims in turns; raises `TimeOver` at the end of the time.
+
+    Returns whether the first programme was solved in its part of the time; otherwise nothing more is done.
+    """
+    from carp_optimum.lagrangian.column_generation import ColumnGeneration  # noqa: PLC0415 - HiGHS is slow to load
+
+    columns = ColumnGeneration(deadlines.search)
+    try:
+        columns.climb(limits.first)
+    except TimeOver:
+        limits.rough()
+        return False
     with suppress(TimeOver):
-        search.climb(max(ROUGH_AIM, search.best // FINAL_AIM), FINE_AIM, lambda: end(search.count), report)
-    search.restore()
-    return _certificate(search)
+        _add_claims(columns, sights, deadlines, limits.rough)
+    _prove(sights, limits.proved)
+    columns.keep_deadlines()
+    columns.climb(limits.end)
+    return True
+
+
+def _add_claims(
+    columns: "ColumnGeneration", sights: "SightSearch | None", deadlines: "DeadlineSearch", look: Callable[[], None]
+) -> None:
+    """Add claims that the best shares of ways break, round by round, until these gain little; `look` may end it."""
+    from carp_optimum.claims.deadline_search import STEPS  # noqa: PLC0415 - numba is slow to load
+
+    before = idle = 0
+    while idle < IDLE_ROUNDS:
+        columns.climb(look)
+        gained = columns.best - before
+        before = columns.best
+        idle = idle + 1 if gained < IDLE_GAIN else 0
+        delays, places = columns.ways(STEPS)
+        try:
+            if sights is not None and sights.is_small:
+                sights.is_slow = gained < LEAST_GAIN
+                sights.add([*zip(delays, places, strict=True)], look)
+            if gained < LEAST_GAIN and deadlines.is_small:
+                deadlines.add(delays, look)
+        finally:
+            columns.add_deadlines()
 
 
 def _limit(

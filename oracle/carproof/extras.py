@@ -9,6 +9,7 @@ EXTRAS = {
     "defusedxml": ("defusedxml", "layouts"),
     "distributed": ("distributed", "experiments"),
     "fpdf": ("fpdf2", "experiments"),
+    "highspy": ("highspy", "prove"),
     "hypothesis": ("hypothesis", "test"),
     "joblib": ("joblib", "experiments"),
     "markdown": ("Markdown", "experiments"),

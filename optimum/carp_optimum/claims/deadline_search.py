@@ -61,12 +61,22 @@ class DeadlineSearch:
 
         `check` may raise `TimeOver`; the deadlines found until then are added first.
         """
-        wide = max(len(self.instance.graph.resources), self.search.dual.delays)
-        if len(self.instance.robots) * wide > LARGEST_ENCODING:
+        if not self.is_small:
             return 0
         delays = np.stack([self.search.delays() for _ in self.search.wander(STEPS, check)])
-        if delays.max(axis=0).sum() > LARGEST_DELAYS:
-            return 0
+        return 0 if delays.max(axis=0).sum() > LARGEST_DELAYS else self.add(delays, check)
+
+    @property
+    def is_small(self) -> bool:
+        """Whether the tables of all robots are small enough."""
+        wide = max(len(self.instance.graph.resources), self.search.dual.delays)
+        return len(self.instance.robots) * wide <= LARGEST_ENCODING
+
+    def add(self, delays: Longs, check: Callable[[], None]) -> int:
+        """Add deadlines that `STEPS` ways break, of these delays by step and robot: by how much, in parts of a tick.
+
+        `check` may raise `TimeOver`; the deadlines found until then are added first.
+        """
         allowed = range(int(delays.max(initial=0)) + MARGIN + 1)
         later = np.stack([(delays > each).sum(axis=0) for each in allowed], axis=1)  # steps, by robot and delay
         chosen: list[Deadlines] = []

@@ -58,12 +58,17 @@ class SightSearch:
         `check` may raise `TimeOver`; the claims found until then are added first.
         """
         search = self.search
-        wide = max(len(self.instance.graph.resources), search.dual.delays, search.horizon)
-        if len(self.instance.robots) * wide > LARGEST_ENCODING:
+        if not self.is_small:
             return 0
         ways = [(search.delays(), search.places()) for _ in search.wander(STEPS, check)]
-        gained = self._add(ways, check) * search.scale // STEPS
+        gained = self.add(ways, check)
         return gained if gained * LEAST_GAIN >= search.best else 0
+
+    @property
+    def is_small(self) -> bool:
+        """Whether the tables of all robots are small enough."""
+        wide = max(len(self.instance.graph.resources), self.search.dual.delays, self.search.horizon)
+        return len(self.instance.robots) * wide <= LARGEST_ENCODING
 
     def watch(self, check: Callable[[], None]) -> None:
         """Look at the ways after a step of a climb; now and then add claims that the last ones break, and drop others.
@@ -79,10 +84,10 @@ class SightSearch:
             search.drop_idle_deadlines()
             self.is_slow = (search.best - self.before) * SLOW < search.best
             self.before = search.best
-            self._add(ways, check)
+            self.add(ways, check)
 
-    def _add(self, ways: Sequence[Ways], check: Callable[[], None]) -> int:
-        """Add claims that these ways break, those that are found fastest first: by how many ways in all.
+    def add(self, ways: Sequence[Ways], check: Callable[[], None]) -> int:
+        """Add claims that these ways break, those that are found fastest first: by how much, in parts of a tick.
 
         On a tree, robots whose ways are short or cannot pass each other break claims most often, and have few states.
         A pair counts as twice the work for each search since its last claim, so that every pair has its turn.
@@ -114,7 +119,7 @@ class SightSearch:
                     del self.searched[pair]
         finally:
             search.add_deadlines(chosen)
-        return gain
+        return gain * search.scale // len(ways)
 
     def prove(self, check: Callable[[], None]) -> None:
         """Prove the claims that have a price, the dearest first, and drop those without a proof.

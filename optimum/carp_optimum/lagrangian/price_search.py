@@ -261,10 +261,34 @@ class PriceSearch:
             self._kept = self._point()
         return bound
 
-    def climb(self, first_aim: int, last_aim: int, check: Callable[[], None], on_step: Callable[[], None]) -> None:
+    def try_prices(self, cells: Longs, prices: Longs, fees: Longs) -> int:
+        """The bound that prices of cells and fees of deadlines prove in place of all others; the best are kept.
+
+        A cell is a number times the horizon, and a tick; constraints are numbered first, then moves.
+        """
+        dual = self.dual
+        cells, prices = cells[prices > 0], prices[prices > 0]
+        place = cells // self.horizon
+        of_exchange = place >= dual.graph.room.size
+        place[of_exchange] = dual.graph.target[dual.prices.back[place[of_exchange] - dual.graph.room.size]]
+        dual.usage.met[place[dual.limits.row[place] == 0]] = 1
+        self._add_rows()
+        has_row = self.dual.limits.row[place] > 0
+        for is_exchange in (False, True):
+            forget(self.native, is_exchange)
+            chosen = has_row & (of_exchange == is_exchange)
+            first = dual.graph.room.size * self.horizon if is_exchange else 0
+            for cell, price in zip((cells[chosen] - first).tolist(), prices[chosen].tolist(), strict=True):
+                set_price(self.native, is_exchange, cell, price)
+        self.fees = fees
+        self._is_charged = False
+        self.count += 1
+        return self._new_bound()
+
+    def climb(self, first_aim: int, last_aim: int, check: Callable[[], None]) -> None:
         """Take steps that aim closer and closer to the best bound, from the first aim to the last, in parts of a tick.
 
-        `check` is called before each, and may raise `TimeOver`, and `on_step` after it.
+        `check` is called before each, and may raise `TimeOver`.
         """
         check()
         bound = self.restore()
@@ -288,7 +312,6 @@ class PriceSearch:
                 before = self.best
                 aim = min(aim, max(aim // OVERSHOT, self.best // LEAST_PARTS)) if overshot else aim * 3 // 4
                 bound = self.restore()
-            on_step()
 
     def roam(self, first_aim: int, last_aim: int, check: Callable[[], None], on_step: Callable[[], None]) -> None:
         """Take steps as `climb` does, but never back to the best prices, while `on_step` may add deadlines.

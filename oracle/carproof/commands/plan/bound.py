@@ -33,7 +33,7 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "total cost", "gap", "step
 @click.option(
     "--seconds", type=click.IntRange(min=1), help=f"For how long to search at most.  [default: {BOUND_SECONDS}]"
 )
-@click.option("--steps", type=click.IntRange(min=0), help="End after this many steps; the result is always the same.")
+@click.option("--steps", type=click.IntRange(min=0), help="End after this many steps, whatever time they take.")
 @click.option("--plans", type=InputFile(), help="A solution in any format, whose total is set against the bound.")
 @from_option
 @output_options
