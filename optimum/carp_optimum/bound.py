@@ -1,6 +1,6 @@
 """Finds a good lower bound on the total cost, with a certificate that `carp_verify.bound.verify` checks.
 
-This is Lagrangian relaxation. Where the robots' ways are short in all, a linear programme gives the best prices
+This is Lagrangian relaxation. Where robots are few or their ways are short, a linear programme gives the best prices
 (`carp_optimum.lagrangian.column_generation`). Elsewhere prices rise step by step where the robots' cheapest ways exceed
 a capacity, and fall where they use less than it (`carp_optimum.lagrangian.price_steps`). When that gains nothing more,
 deadlines are added (`carp_optimum.claims.pair_search`, `carp_optimum.claims.deadline_search`). The steps aim a little
@@ -43,11 +43,11 @@ STEP_PARTS, PROGRAMME_PARTS, PARTS = (2, 26, 30), (6, 29, 31), 32
 The first are those of steps, the second those of a linear programme, which is given up if it is not solved in its first
 part. On a spanning tree prices alone still climb by steps after a quarter of a minute, but with claims faster.
 """
-MOST_TICKS = 5000
-"""Ticks of the shortest ways of all robots, beyond which it is not tried to solve a linear programme."""
+MOST_TICKS = 15_000
+"""Robots times the ticks of prices, beyond which it is not tried to solve a linear programme."""
 LEAST_GAIN = SCALE >> 1
 """Where a round's claims raise the bound by less, groups of robots and claims about more ticks are looked at too."""
-IDLE_GAIN, IDLE_ROUNDS = SCALE >> 4, 6  # rounds that gain less, one after the other, end the search
+IDLE_GAIN, IDLE_ROUNDS = SCALE >> 4, 6  # rounds that gain less, one after the other, end the search for claims
 WAYS_AT_END = 3
 """How often the ways of all robots are still looked for when the time is over, so that it is over before."""
 
@@ -126,7 +126,7 @@ def _by_prices(
     report()
     with suppress(TimeOver):
         claims = DeadlineSearch(search), sights if seen else None
-        is_small = search.shortest <= MOST_TICKS * SCALE
+        is_small = len(instance.robots) * search.horizon <= MOST_TICKS
         if not (is_small and _by_programme(*claims, by_programme)):
             _by_steps(*claims, by_steps)
     search.restore()
@@ -213,7 +213,9 @@ def _add_claims(
     from carp_optimum.claims.deadline_search import STEPS  # noqa: PLC0415 - numba is slow to load
 
     before = idle = 0
-    while idle < IDLE_ROUNDS:
+    is_new = True
+    while is_new and idle < IDLE_ROUNDS:
+        known = len(columns.search.deadlines)
         columns.climb(look)
         gained = columns.best - before
         before = columns.best
@@ -227,6 +229,7 @@ def _add_claims(
                 deadlines.add(delays, look)
         finally:
             columns.add_deadlines()
+        is_new = gained >= LEAST_GAIN or len(columns.search.deadlines) > known
 
 
 def _limit(
