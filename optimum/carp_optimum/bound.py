@@ -225,7 +225,7 @@ def _add_claims(
             if sights is not None and sights.is_small:
                 sights.is_slow = gained < LEAST_GAIN
                 sights.add([*zip(delays, places, strict=True)], look)
-            if gained < LEAST_GAIN and deadlines.is_small:
+            if gained < LEAST_GAIN and deadlines.is_possible:
                 deadlines.add(delays, look)
         finally:
             columns.add_deadlines()

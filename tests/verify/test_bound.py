@@ -227,3 +227,11 @@ def test_the_clock_is_looked_at_within_a_step_and_what_is_found_by_then_is_a_bou
         certificate = lower_bound(instance, seconds=seconds, clock=ticks.__next__)
         assert next(ticks) // 10**9 <= seconds + 12
         assert verify_bound(instance, certificate) == certificate.bound
+
+
+def test_robots_that_meet_beside_one_without_a_way_have_a_bound() -> None:
+    graph = ResourceGraph((Resource("here"), Resource("there")), ())
+    robots = (Robot("lost", "here", "there"), Robot("one", "there", "there"), Robot("other", "there", "there"))
+    certificate = lower_bound(Instance(graph, robots), steps=600)
+    assert verify_bound(Instance(graph, robots), certificate) == certificate.bound
+    assert dict(certificate.robots)["lost"] is None

@@ -15,6 +15,7 @@ from typing import TypeAlias
 import numpy as np
 
 from carp_optimized.jit.kinds import Longs
+from carp_optimized.state.arrays import NONE
 from carp_optimum.lagrangian.deadlines import Deadlines, Member
 from carp_optimum.lagrangian.price_search import PriceSearch
 from carp_optimum.sat.proving import short_refutation
@@ -61,16 +62,17 @@ class DeadlineSearch:
 
         `check` may raise `TimeOver`; the deadlines found until then are added first.
         """
-        if not self.is_small:
+        if not self.is_possible:
             return 0
         delays = np.stack([self.search.delays() for _ in self.search.wander(STEPS, check)])
         return 0 if delays.max(axis=0).sum() > LARGEST_DELAYS else self.add(delays, check)
 
     @property
-    def is_small(self) -> bool:
-        """Whether the tables of all robots are small enough."""
+    def is_possible(self) -> bool:
+        """Whether the tables of all robots are small enough, and each has a way: clauses have no place without one."""
         wide = max(len(self.instance.graph.resources), self.search.dual.delays)
-        return len(self.instance.robots) * wide <= LARGEST_ENCODING
+        all_have_ways = bool((self.search.dual.requests.earliest != NONE).all())
+        return all_have_ways and len(self.instance.robots) * wide <= LARGEST_ENCODING
 
     def add(self, delays: Longs, check: Callable[[], None]) -> int:
         """Add deadlines that `STEPS` ways break, of these delays by step and robot: by how much, in parts of a tick.
