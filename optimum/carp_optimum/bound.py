@@ -74,10 +74,10 @@ def lower_bound(
     """Search for this many seconds or steps, whichever is over first, or until nothing is gained any more.
 
     Without a limit the search takes 10 seconds.
-    With steps alone, the same instance gives the same certificate. `on_step` is called after each step, and now and
-    then while claims are searched for; `clock` gives nanoseconds. `seen` is whether robots with deadlines may be seen
-    at ticks, for which the search for an optimum has no literals. Over stops, cuts alone are searched for. Raises
-    `Refusal` for numbers that are too large.
+    With steps alone, the same instance gives the same certificate on one kind of processor. `on_step` is called after
+    each step, and now and then while claims are searched for; `clock` gives nanoseconds. `seen` is whether robots with
+    deadlines may be seen at ticks, for which the search for an optimum has no literals. Over stops, cuts alone are
+    searched for. Raises `Refusal` for numbers that are too large.
     """
     require_instance(instance)
     require_limits(seconds=seconds, steps=steps)

@@ -34,7 +34,7 @@ def optimum(
     one of its own.
 
     The result depends neither on the clock, which gives nanoseconds, nor on the processes: the same instance gives the
-    same solution.
+    same solution on one kind of processor.
     """
     return core_guided(instance, limit, clock, partial(_start_beside, own_process=processes > 1))
 

@@ -32,12 +32,11 @@ CLOSE = 0.02  # ticks from the bound to what the programme costs
 
 
 class Column(NamedTuple):
-    """A way: its robot, its delay and where it has the robot at each tick, and the cells that it uses."""
+    """A way: its robot, its delay, and where it has the robot at each tick."""
 
     robot: int
     delay: int
     places: Longs
-    cells: Longs
 
 
 class ColumnGeneration:
@@ -124,8 +123,7 @@ class ColumnGeneration:
                 self.known.add(way)
                 cells = self._cells_of(robot, resources.astype(np.int64), enters.astype(np.int64))
                 delay = int(enters[-1] - dual.requests.earliest[robot])
-                column = Column(robot, delay, places[robot].astype(np.int64), cells)
-                self._add_column(column)
+                self._add_column(Column(robot, delay, places[robot].astype(np.int64)), cells)
                 new.append(cells)
         self.cells = np.concatenate([self.cells, *new])
         self.column = np.concatenate([self.column, np.repeat(np.arange(first, len(self.columns)), [*map(len, new)])])
@@ -135,12 +133,10 @@ class ColumnGeneration:
         requests = self.search.dual.requests
         return int(requests.earliest[robot] - requests.release[robot]) + delay
 
-    def _add_column(self, column: Column) -> None:
-        at = np.searchsorted(self.cell_of_row, column.cells)
-        inside = at < self.cell_of_row.size
-        at = at[inside][self.cell_of_row[at[inside]] == column.cells[inside]]
+    def _add_column(self, column: Column, cells: Longs) -> None:
+        priced = self.row_of_cell[np.isin(self.cell_of_row, cells)]
         kept = [row for row, member in self.members[column.robot] if self._keeps(member, column)]
-        rows = np.concatenate([[self.row_of_robot[column.robot]], self.row_of_cell[at], kept]).astype(np.int64)
+        rows = np.concatenate([[self.row_of_robot[column.robot]], priced, kept]).astype(np.int64)
         rows, counts = np.unique(rows, return_counts=True)
         self.columns.append(column)
         self.programme.add_column(self._cost(column.robot, column.delay), rows, counts)

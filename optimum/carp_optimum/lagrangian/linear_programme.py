@@ -38,7 +38,7 @@ class LinearProgramme:
         for option, value in (("threads", 1), ("simplex_strategy", DUAL_SIMPLEX)):
             self._highs.setOptionValue(option, value)
         self._highs.cbSimplexInterrupt.subscribe(self._look)
-        self.rows = self.columns = 0
+        self.rows = 0
         self.shares: Floats = np.zeros(0)
         self.duals: Floats = np.zeros(0)
         self.objective = 0.0
@@ -71,12 +71,10 @@ class LinearProgramme:
         """Let the row allow anything."""
         self._highs.changeRowBounds(row, -highspy.kHighsInf, highspy.kHighsInf)
 
-    def add_column(self, cost: float, rows: Longs, counts: Longs) -> int:
-        """Add a column that counts so many times in these rows; its number."""
+    def add_column(self, cost: float, rows: Longs, counts: Longs) -> None:
+        """Add a column that counts so many times in these rows."""
         values = counts.astype(np.float64)
         self._highs.addCol(cost, 0.0, highspy.kHighsInf, rows.size, rows.astype(np.int32), values)
-        self.columns += 1
-        return self.columns - 1
 
     def solve(self, check: Callable[[], None]) -> None:
         """Find the least cost; `check` is called now and then, and may raise."""

@@ -171,13 +171,17 @@ class PriceSearch:
         fee[:] = 0
         np.add.at(fee, (flat.row, flat.place), self.fees[flat.group_of_place])
 
+    def _set_prices(self, *priced: tuple[Longs, Longs]) -> None:
+        """Let these cells of constraints and of exchanges have these prices, and no others any."""
+        for is_exchange, cells_and_prices in enumerate(priced):
+            forget(self.native, bool(is_exchange))
+            for cell, price in np.column_stack(cells_and_prices).tolist():
+                set_price(self.native, bool(is_exchange), cell, price)
+
     def restore(self) -> int:
         """Go back to the best prices, without a course: their bound."""
         kept = self._kept
-        for is_exchange, priced in ((False, kept.limits), (True, kept.exchanges)):
-            forget(self.native, is_exchange)
-            for cell, price in np.column_stack(priced).tolist():
-                set_price(self.native, is_exchange, cell, price)
+        self._set_prices(kept.limits, kept.exchanges)
         self.fees = kept.fees.copy()
         self._course_of_fees[:] = 0
         return self._bound()
@@ -274,12 +278,9 @@ class PriceSearch:
         dual.usage.met[place[dual.limits.row[place] == 0]] = 1
         self._add_rows()
         has_row = self.dual.limits.row[place] > 0
-        for is_exchange in (False, True):
-            forget(self.native, is_exchange)
-            chosen = has_row & (of_exchange == is_exchange)
-            first = dual.graph.room.size * self.horizon if is_exchange else 0
-            for cell, price in zip((cells[chosen] - first).tolist(), prices[chosen].tolist(), strict=True):
-                set_price(self.native, is_exchange, cell, price)
+        cells[of_exchange] -= dual.graph.room.size * self.horizon
+        limits, exchanges = has_row & ~of_exchange, has_row & of_exchange
+        self._set_prices((cells[limits], prices[limits]), (cells[exchanges], prices[exchanges]))
         self.fees = fees
         self._is_charged = False
         self.count += 1

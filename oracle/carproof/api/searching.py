@@ -34,8 +34,8 @@ def bound(instance: Instance, seconds: float | None = None, steps: int | None = 
     """Search for a lower bound on the total cost, with a certificate that `verify_bound` checks.
 
     The search takes so many seconds or steps, whichever are over first, and 10 seconds if neither is given. With steps
-    alone, the same instance gives the same certificate. Raises `Refusal` for wrong limits and numbers that are too
-    large.
+    alone, the same instance gives the same certificate on one kind of processor. Raises `Refusal` for wrong limits and
+    numbers that are too large.
     """
     from carp_optimum.bound import lower_bound  # noqa: PLC0415 - slow to load
 
