@@ -8,6 +8,7 @@ import numpy as np
 from carp_optimized import passes
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.jit.kinds import Ints
+from carp_optimized.queries.search import WHOLE
 from carp_optimized.queries.windows import STANDING
 from carp_optimized.state.arrays import LARGEST, TOO_FAR, UNREACHABLE
 from carp_spec import Instance, Plan, RobotId
@@ -23,7 +24,7 @@ class Certifier:
     def __init__(self, instance: Instance) -> None:
         """Begin without plans. Raises `Refusal` if the instance has numbers that are too large."""
         self._instance = instance
-        self._fleet = PlannedFleet(instance, shortcuts=False)
+        self._fleet = PlannedFleet(instance)
         self._ids = [resource.id for resource in instance.graph.resources]
 
     def commit(self, plans: Sequence[Plan]) -> None:
@@ -35,11 +36,12 @@ class Certifier:
     ) -> tuple[Plan | None, QueryCertificateDocument]:
         """The plan of the robot that arrives earliest, `None` if it has none, and its certificate.
 
-        `followed` is the plan that the robot has followed until the tick `now`. The labels are the windows expanded
-        from which the goal is not reached at the bound or later.
+        `followed` is the plan that the robot has followed until the tick `now`. The labels are the windows from which
+        the goal might be reached before the bound.
         """
         index = self._fleet.index(robot)
-        plan, expanded = find_with_labels(self._fleet, index, followed, now)
+        plan = self._fleet.find(index, followed, now)
+        expanded = labels_before_arrival(self._fleet, index, followed, now)
         bound = None if plan is None else plan.visits[-1].enter
         layers = [
             ServedLayer(
@@ -56,21 +58,18 @@ class Certifier:
         return plan, certificate_of(robot, now, bound, layers[-left:])
 
 
-def find_with_labels(
-    fleet: PlannedFleet, robot: int, before: Plan | None, now: int
-) -> tuple[Plan | None, list[Labels]]:
-    """The plan that a fleet finds for a robot, and the windows that its query expanded.
+def labels_before_arrival(fleet: PlannedFleet, robot: int, before: Plan | None, now: int) -> list[Labels]:
+    """The windows that the query of a robot expands, asked for the `WHOLE`.
 
     Told are their resources, each with the tick of its entry. A robot with stops has such a list for each number of
-    stops served; the tick is then that from which it may leave, less the duration. With shortcuts not all windows are
-    expanded that could be entered before the arrival.
+    stops served; the tick is then that from which it may leave, less the duration.
     """
     search = fleet.state.search
     search.expansions[0] = 0
     search.generation[0] += 1
-    plan = fleet.find(robot, before, now)
+    fleet.find(robot, before, now, WHOLE)
     own = fleet.instance.robots[robot]
-    return plan, [_labels(fleet, robot)] if own.has_goal_alone else _labels_over_stops(fleet, len(own.stops))
+    return [_labels(fleet, robot)] if own.has_goal_alone else _labels_over_stops(fleet, len(own.stops))
 
 
 def _labels(fleet: PlannedFleet, robot: int) -> Labels:
@@ -84,7 +83,7 @@ def _labels(fleet: PlannedFleet, robot: int) -> Labels:
     if count == 0:
         return []
     resources = search.expanded[:count]
-    enters = (search.popped[:count] >> 32) - _guide(fleet, robot)[resources]
+    enters = search.entered[:count].copy()
     start, ready = int(resources[0]), int(search.ready[0])
     ticks = int(fleet.state.robots.pace[robot]) * int(fleet.state.graph.duration[start])
     overstayed = start == fleet.state.robots.goal[robot] and not fleet.state.parks and ready > enters[0] + ticks

@@ -60,7 +60,7 @@ class PathMoves:
         """Begin without moves; all other arrays are those of the fleet."""
         first, target = np.zeros_like(state.graph.first), np.full_like(state.graph.target, NONE)
         graph = state.graph._replace(first=first, target=target)
-        self.native = Native(state._replace(graph=graph, shortcuts=False))
+        self.native = Native(state._replace(graph=graph))
 
     def along(self, path: Path) -> Native[State]:
         """The arrays with the moves of this path alone."""

@@ -13,6 +13,7 @@ from carp_optimized.jit.references import Native
 from carp_optimized.neighbourhood.adding import add_robot
 from carp_optimized.neighbourhood.polishing import FORGOTTEN, NOW, QUEUED, TURN, play_rounds
 from carp_optimized.neighbourhood.reuse import Queries, Reuse
+from carp_optimized.queries.search import ALONE
 from carp_optimized.recording import enlarged, read_plan, write_plan
 from carp_optimized.state import encoding, limits, room
 from carp_optimized.state.arrays import LARGEST, NONE, UNASKED, UNKNOWN, Adding, Options, Polish, Records, State
@@ -39,8 +40,8 @@ class PlannedFleet:
     none is at work.
     """
 
-    def __init__(self, instance: Instance, reuse: Reuse | None = None, *, shortcuts: bool = True) -> None:
-        """Begin without plans; with `shortcuts` queries leave out what their plans do not depend on.
+    def __init__(self, instance: Instance, reuse: Reuse | None = None) -> None:
+        """Begin without plans.
 
         Raises `Refusal` if the instance has numbers that are too large.
         """
@@ -50,7 +51,7 @@ class PlannedFleet:
         self.reuse = reuse or Reuse()
         self._adding: Native[Adding] | None = None
         self._path_moves: PathMoves | None = None
-        self._take(encoding.encode(instance, shortcuts=shortcuts))
+        self._take(encoding.encode(instance))
         self._ids = [robot.id for robot in instance.robots]
         self._names = [*instance.graph.index]
         self._index = {id: position for position, id in enumerate(self._ids)}
@@ -223,11 +224,15 @@ class PlannedFleet:
         plans = {plan.robot: plan for plan in solution.plans}
         self.commit([plans[robot] for robot in solution.order])
 
-    def find(self, robot: int, before: Plan | None, now: int) -> Plan | None:
-        """The plan of a robot that is not in the fleet, which has followed the plan `before` until now."""
+    def find(self, robot: int, before: Plan | None, now: int, asked: int = ALONE) -> Plan | None:
+        """The plan of a robot that is not in the fleet, which has followed the plan `before` until now.
+
+        It is the one of `query/ties`, or one of the same arrival if `WHOLE` is asked for
+        (`carp_optimized.queries.search`).
+        """
         limits.refuse_tick("$.now", now)
         followed = NONE if before is None else self.record(before)
-        record = self.call(lambda: passes.find_one(self.native, robot, followed, now))
+        record = self.call(lambda: passes.find_one(self.native, robot, followed, now, asked))
         return None if record == NONE else self._plan(record)
 
     def plan_again(self, robot: int, now: int = 0) -> bool:
@@ -239,7 +244,7 @@ class PlannedFleet:
         held = self._records[own]
         self.withdraw(own)
         followed = int(held[0]) if now > 0 else NONE
-        found = np.full(1, self.call(lambda: passes.find_one(self.native, robot, followed, now)), np.int32)
+        found = np.full(1, self.call(lambda: passes.find_one(self.native, robot, followed, now, ALONE)), np.int32)
         is_better = bool(found[0] != NONE and (held[0] == NONE or self._cost(found) < self._cost(held)))
         if is_better:
             self._reserve(own, found)
@@ -271,7 +276,7 @@ class PlannedFleet:
     def _is_best(self, robot: int, record: Ints) -> bool:
         """Whether the robot, which has no plan now, could not arrive earlier than by that one."""
         used = self.state.records.used.copy()
-        found = np.full(1, self.call(lambda: passes.find_one(self.native, robot, NONE, 0)), np.int32)
+        found = np.full(1, self.call(lambda: passes.find_one(self.native, robot, NONE, 0, ALONE)), np.int32)
         is_best = found[0] != NONE and self._cost(found) == self._cost(record)
         self.state.records.used[:] = used
         return bool(is_best)
@@ -282,7 +287,7 @@ class PlannedFleet:
 
         def attempt() -> int:
             passes.reserve_all(self.native, further)
-            found = passes.find_one(self.native, robot, NONE, 0)
+            found = passes.find_one(self.native, robot, NONE, 0, ALONE)
             passes.withdraw_all(self.native, further)
             return found
 
@@ -358,7 +363,7 @@ class PlannedFleet:
         def attempt() -> list[int]:
             passes.reach_from_everywhere(self.native, robot)
             moves = self._path_moves = self._path_moves or PathMoves(self.state)
-            return [passes.find_one(moves.along(path), robot, NONE, 0) for path in paths]
+            return [passes.find_one(moves.along(path), robot, NONE, 0, ALONE) for path in paths]
 
         found = [record for record in self.call(attempt) if record != NONE]
         if not found:

@@ -5,18 +5,18 @@ from carp_optimized.jit.kinds import Ints, Longs
 from carp_optimized.jit.references import Native
 from carp_optimized.queries.guides import guide_of, guide_slot
 from carp_optimized.queries.over_stops import shortest_of
-from carp_optimized.queries.search import cost_alone, find_any_plan, find_plan_by, find_plan_only
-from carp_optimized.queries.windows import plan_fits, reserve, withdraw
+from carp_optimized.queries.search import ALONE, NOTED, cost_alone, find_any_plan, find_plan_by
+from carp_optimized.queries.windows import reserve, still_found, withdraw
 from carp_optimized.state.arrays import NEVER, NONE, TOO_FAR, UNASKED, UNCHANGED, UNKNOWN, State
 from carp_optimized.state.natives import state_at
 from carp_optimized.state.records import close_record, cost_of, start_record
 
 
 @entry
-def find_one(native: Native[State], robot: int, before: int, now: int) -> int:
-    """The record of one robot's plan against the reservations, or `NONE`; nothing is reserved."""
+def find_one(native: Native[State], robot: int, before: int, now: int, asked: int) -> int:
+    """The record of one robot's plan against the reservations, `ALONE` or `WHOLE`, or `NONE`; nothing is reserved."""
     state = state_at(native)
-    return find_plan_only(state, robot, before, now, NEVER)
+    return find_any_plan(state, robot, before, now, NEVER, NEVER, asked)
 
 
 @entry
@@ -106,7 +106,7 @@ def carp(native: Native[State], order: Ints, before: Ints, now: int, plans: Ints
     for k in range(order.size):
         robot = int(order[k])
         state.rank[robot] = rank + k
-        plan = find_any_plan(state, robot, int(before[robot]), now, NEVER, NEVER, not state.parks)
+        plan = find_any_plan(state, robot, int(before[robot]), now, NEVER, NEVER, ALONE if state.parks else NOTED)
         plans[k] = plan
         if plan != NONE:
             reserve(state, plan)
@@ -127,10 +127,10 @@ def greedy(native: Native[State], waiting: Ints, found: Ints, order: Ints, plans
         for k in range(waiting.size - count):
             robot = int(waiting[k])
             known = skip_unchanged and found[k] != UNASKED
-            if known and (found[k] == NONE or plan_fits(state, int(found[k]))):
+            if known and (found[k] == NONE or still_found(state, int(found[k]))):
                 state.counters[UNCHANGED] += 1
             else:
-                found[k] = find_any_plan(state, robot, NONE, 0, NEVER, NEVER, not state.parks)
+                found[k] = find_any_plan(state, robot, NONE, 0, NEVER, NEVER, ALONE if state.parks else NOTED)
             if found[k] != NONE:
                 cost = cost_of(state, int(found[k]))
                 if cost < least:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from carp_reference.problem import prepare
-from carp_reference.query import Node, find_plan
+from carp_reference.query import find_plan, nodes_before_arrival
 from carp_spec import Instance, Plan, RobotId
 from carp_spec.documents.query_certificates import QueryCertificateDocument, ServedLayer, certificate_of
 from carp_spec.plan_rules import stops_left
@@ -31,13 +31,13 @@ class Certifier:
         """
         instance = self._problem.instance
         problem = replace(self._problem, now=now, before={} if followed is None else {robot: followed})
-        expanded: list[Node] = []
-        plan = find_plan(problem, self._committed, robot, expanded=expanded)
+        plan = find_plan(problem, self._committed, robot)
+        expanded = nodes_before_arrival(problem, self._committed, robot)
         bound = None if plan is None else plan.visits[-1].enter
         left = len(stops_left(instance.robot[robot], followed, now))
         layers = []
         for served, potential in [*enumerate(problem.ticks_to_goal[robot])][-left:]:
-            nodes = [node for node in expanded[1:] if node.served == served]
+            nodes = [node for node in expanded if node.served == served]
             ticks = [(node.resource, node.ready - instance.duration(robot, node.resource)) for node in nodes]
             labels = [label for label in ticks if bound is None or label[1] + potential[label[0]] < bound]
             layers.append(ServedLayer((*dict.fromkeys(labels),), (*potential.items(),)))

@@ -37,12 +37,8 @@ def find_plan(
     committed: Sequence[Plan],
     robot: RobotId,
     successors: Mapping[ResourceId, Sequence[ResourceId]] | None = None,
-    expanded: list[Node] | None = None,
 ) -> Plan | None:
-    """The plan with the earliest arrival against the committed plans, or `None`.
-
-    `successors` restricts the moves; the nodes that the search expands are added to `expanded`.
-    """
+    """The plan with the earliest arrival against the committed plans, or `None`; `successors` restricts the moves."""
     context = context_of(problem.instance, committed)
     before = problem.before.get(robot)
     if before is not None and has_ended(before, problem.now):
@@ -51,8 +47,19 @@ def find_plan(
     if start is None:
         return None
     moves = successors or problem.instance.graph.successors
-    last = _search(problem, context, robot, start, moves, [] if expanded is None else expanded)
+    last, _ = _search(problem, context, robot, start, moves, _opens(problem, context, robot))
     return None if last is None else Plan(robot, (*past, *_visits(problem.instance, robot, last)))
+
+
+def nodes_before_arrival(problem: Problem, committed: Sequence[Plan], robot: RobotId) -> list[Node]:
+    """The nodes after the start from which the goal might be reached before the arrival, expanded in the order of f."""
+    before = problem.before.get(robot)
+    context = context_of(problem.instance, committed)
+    _, start = _start(problem, context, robot)
+    if start is None or (before is not None and has_ended(before, problem.now)):
+        return []
+    _, expanded = _search(problem, context, robot, start, problem.instance.graph.successors, 0)
+    return expanded[1:]
 
 
 def _start(problem: Problem, context: Context, robot: RobotId) -> tuple[Sequence[Visit], Node | None]:
@@ -70,19 +77,27 @@ def _start(problem: Problem, context: Context, robot: RobotId) -> tuple[Sequence
     return past, Node(current.resource, window, current.enter, ready, served, None)
 
 
+def _opens(problem: Problem, context: Context, robot: RobotId) -> int:
+    """The tick at which the last window of the goal opens, in which the robot parks; 0 if it does not park."""
+    windows = context.windows(problem.instance.robot[robot].goal)
+    return windows[-1].start if windows and problem.instance.after_goal == "park" else 0
+
+
 def _search(
     problem: Problem,
     context: Context,
     robot: RobotId,
     start: Node,
     successors: Mapping[ResourceId, Sequence[ResourceId]],
-    expanded: list[Node],
-) -> Node | None:
-    """A* in the order of `query/ties`: the node in which the robot ends its plan, or `None`.
+    opens: int,
+) -> tuple[Node | None, list[Node]]:
+    """A* in the order of `query/ties`: the node in which the robot ends its plan, or `None`, and those expanded before.
 
-    The start is not among the windows entered: a robot that has stayed at its goal too long to end there may come back.
+    Nodes of an f up to `opens` come first. The start is not among the windows entered: a robot that has stayed at its
+    goal too long to end there may come back.
     """
     entered: dict[tuple[ResourceId, Window, int], int] = {}
+    expanded: list[Node] = []
     queue: list[tuple[tuple[int, ...], Node]] = []
 
     def push(node: Node) -> None:
@@ -90,14 +105,14 @@ def _search(
         if node.resource in ticks_to_goal:
             g = node.ready - problem.instance.duration(robot, node.resource)
             index = problem.instance.graph.index[node.resource]
-            key = expansion_key(g + ticks_to_goal[node.resource], g, index, node.window.start, node.served)
+            key = expansion_key(g + ticks_to_goal[node.resource], g, index, node.window.start, node.served, opens)
             heappush(queue, (key, node))
 
     push(start)
     while queue:
         _, node = heappop(queue)
         if _can_end(problem, robot, node):
-            return node
+            return node, expanded
         expanded.append(node)
         targets = successors.get(node.resource, ())
         for following in (*_serve(context, robot, node), *_expand(context, robot, node, targets)):
@@ -105,7 +120,7 @@ def _search(
             if key not in entered or following.ready < entered[key]:
                 entered[key] = following.ready
                 push(following)
-    return None
+    return None, expanded
 
 
 def _can_end(problem: Problem, robot: RobotId, node: Node) -> bool:

@@ -43,8 +43,14 @@ def absence_is_true(instance: Instance, committed: Sequence[Plan], rivals: Itera
     "the first parent that gave its smallest g; serving a stop there comes before moving on. g is the tick from which"
     " the robot may leave, less the duration: the tick of entering the window, or a later one after a long service. h"
     " is the least ticks from entering its resource, over the stops left, to entering the goal on the empty graph. "
+    "Where robots park, no plan ends before the last window of the goal opens: windows of an f up to that tick come "
+    "before all others, and of these the smallest h first, then the smallest index, then the smallest g. "
     "The smallest g is enough: who may leave earlier can wait, and only who has just entered ends, or serves a stop.",
     "decision of carproof",
 )
-def expansion_key(f: int, g: int, resource_index: int, window_start: int, served: int = 0) -> tuple[int, ...]:
+def expansion_key(
+    f: int, g: int, resource_index: int, window_start: int, served: int = 0, opens: int = 0
+) -> tuple[int, ...]:
+    if f <= opens:
+        return (0, f - g, resource_index, g, window_start, served)
     return (f, -g, resource_index, window_start, served)

@@ -13,7 +13,7 @@ from carp_optimized import passes
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.neighbourhood.answers import number_plan, start_answers
 from carp_optimized.queries.relevant_plans import reasons
-from carp_optimized.queries.search import find_plan_by
+from carp_optimized.queries.search import ALONE, find_plan_by
 from carp_optimized.state.arrays import NEVER, NONE, PLANS
 from carp_optimized.state.room import no_answers
 from carproof import Following, Instance, Plan, Resource, ResourceGraph, Robot, Visit
@@ -57,7 +57,7 @@ def test_a_query_does_the_same_without_plans_that_are_no_reasons(under_way: Flee
     fleet = fleet_of(instance, others)
     robot = fleet.index(name)
     before = NONE if followed is None else fleet.record(followed)
-    best = passes.find_one(fleet.native, robot, before, under_way.now)
+    best = passes.find_one(fleet.native, robot, before, under_way.now, ALONE)
     assume(best != NONE)
     latest = data.draw(st.sampled_from([NEVER, int(fleet.state.records.arrival[best]) - 1]))
     record, expanded = asked(fleet, robot, followed, under_way.now, latest)

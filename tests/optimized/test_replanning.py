@@ -16,6 +16,7 @@ from tests.profiles import draws
 from carp_optimized import passes
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.neighbourhood.replanning import could_use_freed, forget_freed, note_freed
+from carp_optimized.queries.search import NOTED
 from carp_optimized.state.arrays import NEVER, NONE, UNKNOWN
 from carp_reference.problem import ticks_to_goal
 from carp_spec import Instance, Plan, ResourceId, RobotId
@@ -37,17 +38,23 @@ def least(ready: int, earliest: int, duration: int, h: int) -> int:
     return int(value_of(least_f(*integers(names)), dict(values)))
 
 
-def hulls(plan: Plan) -> Hulls:
-    """From its first to its last tick in each resource."""
+def hulls(instance: Instance, plan: Plan) -> Hulls:
+    """From the first to the last tick that its stays take, in each resource and those of its groups."""
     freed: Hulls = {}
     for visit in plan.visits:
-        earliest, latest = freed.get(visit.resource, (visit.enter, 0))
-        freed[visit.resource] = (earliest, max(latest, NEVER if visit.leave is None else visit.leave))
+        groups = [group.resources for group in instance.graph.groups if visit.resource in group.resources]
+        for resource in {visit.resource}.union(*groups):
+            earliest, latest = freed.get(resource, (visit.enter - instance.gap, 0))
+            leave = NEVER if visit.leave is None else visit.leave + instance.gap
+            freed[resource] = (earliest, max(latest, leave))
     return freed
 
 
 def may_differ(fleet: PlannedFleet, robot: RobotId, record: int, freed: Hulls) -> bool:
-    """The claim of the lemma about a query, by the resources that it has expanded."""
+    """The claim of the lemma about a query, by the resources that it has expanded.
+
+    Besides, a stay freed in the goal may change from when on the robot can park there.
+    """
     instance, records = fleet.instance, fleet.state.records
     first, count = int(records.expansions_at[record]), int(records.expansions[record])
     if count == UNKNOWN:
@@ -61,11 +68,16 @@ def may_differ(fleet: PlannedFleet, robot: RobotId, record: int, freed: Hulls) -
         return least(ready, freed[target][0], instance.duration(robot, target), to_goal[target]) <= arrival
 
     start = expanded[0][0]
-    return (start in freed and in_time(-NEVER, start)) or any(
-        in_time(ready, target)
-        for resource, ready in expanded
-        for target in instance.graph.successors[resource]
-        if target in freed and target in to_goal and freed[target][1] > ready
+    parks = instance.after_goal == "park"
+    return (
+        (parks and instance.robot[robot].goal in freed)
+        or (start in freed and in_time(-NEVER, start))
+        or any(
+            in_time(ready, target)
+            for resource, ready in expanded
+            for target in instance.graph.successors[resource]
+            if target in freed and target in to_goal and freed[target][1] > ready
+        )
     )
 
 
@@ -89,7 +101,7 @@ def test_a_query_is_repeated_only_where_the_lemma_says_and_else_finds_the_same(
     fleet = fleet_of(instance, others)
     state = fleet.state
     before = NONE if followed is None else fleet.record(followed)
-    record = passes.find_one(fleet.native, fleet.index(robot), before, under_way.now)
+    record = passes.find_one(fleet.native, fleet.index(robot), before, under_way.now, NOTED)
     assume(record != NONE)
     forget_freed(state.freed)
     whole: Hulls = {}
@@ -97,7 +109,7 @@ def test_a_query_is_repeated_only_where_the_lemma_says_and_else_finds_the_same(
         withdrawn = int(fleet._records[fleet.index(plan.robot)])
         passes.withdraw_all(fleet.native, np.array([withdrawn], np.int32))
         note_freed(state, withdrawn, 0, 0)
-        for resource, (earliest, latest) in hulls(plan).items():
+        for resource, (earliest, latest) in hulls(instance, plan).items():
             known = whole.get(resource, (earliest, latest))
             whole[resource] = (min(earliest, known[0]), max(latest, known[1]))
     is_repeated = could_use_freed(state, record, NEVER)

@@ -15,7 +15,7 @@ from carp_optimized import Reuse
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.state.arrays import ANSWERS, PLANS
 from carp_spec import Instance, Neighbourhood, Solution
-from carproof.generate import Fleet, Grid, grid_instance
+from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 
 KINDS = ("kept", "unchanged", "prefixes", "shared", "bounds")
 ALL_OFF = Reuse(**dict.fromkeys(KINDS, False))
@@ -156,3 +156,29 @@ def test_a_plan_found_against_other_plans_is_judged_by_what_its_own_query_read(r
     instance = grid_instance(Grid(map=6), Fleet(robots, seed=16))
     options = Neighbourhood(m=10, sample=150, seed=16, baseline=baseline)
     assert carp_optimized.plan(instance, options) == carp_optimized.plan(instance, options, reuse=ALL_OFF)
+
+
+PARKED = [
+    (Grid(10, 10, map=20), Fleet(robots=30, seed=11), Traits(duration=Range(1, 3)), Neighbourhood(m=7, sample=20)),
+    (Grid(10, 10, map=5), Fleet(robots=50, seed=12), Traits(capacity=Range(1, 2)), Neighbourhood(baseline=False)),
+    (Grid(8, 8, map=5), Fleet(robots=12, seed=13), Traits(), Neighbourhood(m=7, sample=20)),
+    (Grid(10, 10, map=10), Fleet(robots=12, seed=250), Traits(capacity=Range(1, 2)), Neighbourhood(m=2)),
+    (Grid(8, 8, map=3), Fleet(robots=32, seed=539), Traits(), Neighbourhood(m=7, sample=20)),
+    (
+        Grid(10, 10, map=10),
+        Fleet(robots=30, seed=666, release=Range(0, 5), pace=Range(1, 2)),
+        Traits(),
+        Neighbourhood(baseline=False),
+    ),
+]
+
+
+@pytest.mark.parametrize(
+    ("grid", "fleet", "traits", "planner"), PARKED, ids=lambda each: str(getattr(each, "seed", ""))
+)
+def test_plans_of_robots_that_park_are_the_same_whatever_is_reused(
+    grid: Grid, fleet: Fleet, traits: Traits, planner: Neighbourhood
+) -> None:
+    """When a goal is free for ever decides which windows come first, so plans that end there later change queries."""
+    instance = grid_instance(grid, replace(fleet, after_goal="park"), traits)
+    assert carp_optimized.plan(instance, planner) == carp_optimized.plan(instance, planner, reuse=ALL_OFF)

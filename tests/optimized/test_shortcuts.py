@@ -1,9 +1,11 @@
-"""Queries that leave out what their plans do not depend on find the plans of those that leave out nothing."""
+"""Queries for a plan alone look at few windows, and arrive when those do that look at all that matter."""
+
+from collections.abc import Iterator
 
 import pytest
 
 from carp_optimized.fleet import PlannedFleet
-from carp_spec import Instance, Plan
+from carp_optimized.queries.search import ALONE, WHOLE
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 
 CROWDS = {
@@ -29,51 +31,47 @@ CROWDS = {
 }
 
 
-def planned(instance: Instance, *, shortcuts: bool) -> tuple[tuple[Plan, ...], tuple[Plan, ...]]:
-    """The plans of a pass, and what a polish makes of them."""
-    fleet = PlannedFleet(instance, shortcuts=shortcuts)
+def beside_others(crowd: str) -> Iterator[tuple[PlannedFleet, int]]:
+    """Robots of a crowd, each with the fleet of all others that have plans."""
+    instance = CROWDS[crowd]
+    fleet = PlannedFleet(instance)
     fleet.carp(range(len(instance.robots)))
-    first = fleet.plans
-    fleet.polish(fleet.polishing(seed=0), 400)
-    return first, fleet.plans
+    for asked in range(0, len(instance.robots), 5):
+        others = PlannedFleet(instance)
+        others.commit([plan for robot, plan in zip(fleet.order, fleet.plans, strict=True) if robot != asked])
+        yield others, asked
 
 
 @pytest.mark.parametrize("crowd", CROWDS)
-def test_shortcuts_change_no_plan(crowd: str) -> None:
-    instance = CROWDS[crowd]
-    assert planned(instance, shortcuts=True) == planned(instance, shortcuts=False)
+def test_a_plan_alone_arrives_when_the_whole_search_does(crowd: str) -> None:
+    for fleet, robot in beside_others(crowd):
+        alone, whole = fleet.find(robot, None, 0), fleet.find(robot, None, 0, WHOLE)
+        assert (alone is None) == (whole is None)
+        assert alone is None or whole is None or alone.visits[-1].enter == whole.visits[-1].enter
 
 
-def entered_in_vain(crowd: str, *, shortcuts: bool) -> int:
+def entered_in_vain(crowd: str, asked: int) -> int:
     """The windows that the queries of the robots that a pass leaves without a plan enter, asked again behind it."""
     instance = CROWDS[crowd]
-    fleet = PlannedFleet(instance, shortcuts=shortcuts)
+    fleet = PlannedFleet(instance)
     fleet.carp(range(len(instance.robots)))
     count = 0
     for robot in sorted({*range(len(instance.robots))} - {*fleet.order}):
         before = fleet.state.search.generation << 32
-        assert fleet.find(robot, None, 0) is None
+        assert fleet.find(robot, None, 0, asked) is None
         count += int((fleet.state.search.reached > before).sum())
     return count
 
 
 @pytest.mark.parametrize("crowd", ["open", "dead ends"])
 def test_a_query_ends_soon_where_robots_cut_its_goal_off(crowd: str) -> None:
-    assert 0 < 2 * entered_in_vain(crowd, shortcuts=True) < entered_in_vain(crowd, shortcuts=False)
+    assert 4 * entered_in_vain(crowd, ALONE) < 3 * entered_in_vain(crowd, WHOLE)
 
 
-def expanded(*, shortcuts: bool) -> int:
-    """The windows that the queries of some robots expand, each against the plans of all others."""
-    fleet = PlannedFleet(CROWDS["open"], shortcuts=shortcuts)
-    fleet.carp(range(250))
-    count = 0
-    for asked in range(0, 250, 25):
-        beside = PlannedFleet(CROWDS["open"], shortcuts=shortcuts)
-        beside.commit([plan for robot, plan in zip(fleet.order, fleet.plans, strict=True) if robot != asked])
-        beside.find(asked, None, 0)
-        count += int(beside.state.search.expansions[0])
-    return count
-
-
-def test_shortcuts_leave_out_windows() -> None:
-    assert 4 * expanded(shortcuts=True) < 3 * expanded(shortcuts=False)
+def test_a_goal_that_is_free_late_costs_few_windows() -> None:
+    counts = {ALONE: 0, WHOLE: 0}
+    for fleet, robot in beside_others("open"):
+        for asked in counts:
+            fleet.find(robot, None, 0, asked)
+            counts[asked] += int(fleet.state.search.expansions[0])
+    assert 4 * counts[ALONE] < 3 * counts[WHOLE]

@@ -23,6 +23,7 @@ TESTED: Mapping[str, Mapping[str, str]] = {
         """,
         "test_costs_are_the_ticks_before_the_last_visits": "cost/robot cost/total",
         "test_what_is_expanded_first_is_best_in_each_respect_among_its_equals": "query/ties",
+        "test_before_a_goal_is_free_for_ever_the_nearest_window_is_expanded_first": "query/ties",
         "test_there_is_always_a_first_candidate": "neighbourhood/baseline",
         "test_the_best_of_all_candidates_is_the_first_of_the_cheapest": "neighbourhood/best",
         "test_a_trajectory_is_the_last_plan_that_was_found": "neighbourhood/update",

@@ -198,6 +198,21 @@ def test_what_is_expanded_first_is_best_in_each_respect_among_its_equals(
 
 
 @settings(max_examples=draws(200))
+@given(st.lists(st.tuples(*[st.integers(0, 3)] * 3), min_size=1), st.integers(0, 4))
+def test_before_a_goal_is_free_for_ever_the_nearest_window_is_expanded_first(
+    nodes: list[tuple[int, int, int]], opens: int
+) -> None:
+    h, g, index = min(nodes, key=lambda node: expansion_key(node[0] + node[1], node[1], node[2], 0, 0, opens))
+    early = [node for node in nodes if node[0] + node[1] <= opens]
+    if early:
+        assert h == min(node[0] for node in early)
+        assert index == min(node[2] for node in early if node[0] == h)
+        assert g == min(node[1] for node in early if (node[0], node[2]) == (h, index))
+    else:
+        assert h + g == min(node[0] + node[1] for node in nodes)
+
+
+@settings(max_examples=draws(200))
 @given(st.lists(st.integers(0, 5)))
 def test_the_best_of_all_candidates_is_the_first_of_the_cheapest(costs: list[int]) -> None:
     best: int | None = None

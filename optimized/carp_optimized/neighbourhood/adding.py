@@ -16,7 +16,15 @@ from carp_optimized.neighbourhood.replanning import (
 )
 from carp_optimized.queries.over_stops import shortest_of
 from carp_optimized.queries.search import find_plan_alone, find_plan_by
-from carp_optimized.queries.windows import give_rank, plan_fits, reserve_but, withdraw, withdraw_but
+from carp_optimized.queries.windows import (
+    give_rank,
+    has_same_order,
+    plan_fits,
+    reserve_but,
+    still_found,
+    withdraw,
+    withdraw_but,
+)
 from carp_optimized.state.arrays import (
     LARGEST,
     NEVER,
@@ -140,7 +148,7 @@ def try_baseline(state: State, work: Work, size: int, shortest: int, now: int, s
     If they leave room for its plan on the empty graph, that is found again (`carp_optimized.neighbourhood.replanning`).
     """
     new = int(work.queue[size])
-    if skip_unchanged and plan_fits(state, shortest):
+    if skip_unchanged and still_found(state, shortest):
         state.counters[UNCHANGED] += 1
         plan = shortest
     else:
@@ -255,7 +263,7 @@ def latest_alone(state: State, work: Work, member: int, is_last: bool, skip_unch
     if record == NONE or not plan_fits(state, record):
         return NEVER
     is_known = skip_unchanged and state.records.expansions[record] != UNKNOWN
-    if is_known and (is_last or not could_use_freed(state, record, NEVER)):
+    if is_known and ((is_last and has_same_order(state, record, NEVER)) or not could_use_freed(state, record, NEVER)):
         return NONE
     return int(state.records.arrival[record])
 

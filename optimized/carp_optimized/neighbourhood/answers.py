@@ -2,7 +2,7 @@
 
 from carp_optimized.jit.compiling import compiled
 from carp_optimized.state.arrays import ANSWERS, LATE, NONE, PLANS, Answers, State
-from carp_optimized.state.records import clash, same_plan
+from carp_optimized.state.records import clash, delays_parking, same_plan
 
 
 @compiled
@@ -16,10 +16,15 @@ def start_answers(answers: Answers, members: int) -> None:
 
 @compiled
 def number_plan(state: State, answers: Answers, member: int, record: int) -> int:
-    """The number of the member's plan; `PLANS` if there are too many."""
+    """The number of the member's plan; `PLANS` if there are too many.
+
+    Plans that are the same have several where the goal was free for ever from several ticks on.
+    """
     used = int(answers.used[0])
     for plan in range(used):
-        if answers.owner[plan] == member and same_plan(state.records, int(answers.record[plan]), record):
+        known = int(answers.record[plan])
+        is_alike = answers.owner[plan] == member and state.records.opens[known] == state.records.opens[record]
+        if is_alike and same_plan(state.records, known, record):
             return plan
     if used == PLANS:
         return PLANS
@@ -51,12 +56,18 @@ def learn(answers: Answers, member: int, given: int, plan: int, record: int, lea
 
 @compiled
 def has_clash(state: State, answers: Answers, plan: int, given: int) -> bool:
-    """Whether the plan clashes with one of the set; two plans are compared when first asked for."""
+    """Whether the plan clashes with one of the set, or its query would go another way beside it.
+
+    Two plans are compared when first asked for.
+    """
     new = given & ~int(answers.compared[plan])
     other = 0
     while new >> other != 0:
-        if (new >> other) & 1 == 1 and clash(state, int(answers.record[plan]), int(answers.record[other])):
-            answers.clashes[plan] |= 1 << other
+        if (new >> other) & 1 == 1:
+            record = int(answers.record[plan])
+            beside = int(answers.record[other])
+            if clash(state, record, beside) or delays_parking(state, record, beside):
+                answers.clashes[plan] |= 1 << other
         other += 1
     answers.compared[plan] |= new
     return int(answers.clashes[plan]) & given != 0

@@ -33,6 +33,7 @@ from carp_optimized.state.arrays import (
     NONE,
     PREFIX,
     SHARED,
+    UNKNOWN,
     Answers,
     Options,
     State,
@@ -183,9 +184,9 @@ def plan_member(
         hold_members(state, work, place, count)
         robot = int(work.members[member])
         latest = min(spare - 1 + int(state.robots.release[robot]), NEVER)
-        state.search.expansions[0] = 0
+        state.search.expansions[0] = UNKNOWN
         record = find_plan_by(state, robot, int(work.before[robot]), now, NEVER, latest)
-        if shared and place > 1 and state.search.expansions[0] > 0:
+        if shared and place > 1 and state.search.expansions[0] != UNKNOWN:
             given = reasons(state, answers, robot, record, latest, given)
         if shared and record != NONE:
             plan = number_plan(state, answers, member, record)

@@ -1,6 +1,7 @@
 """Replanning the robots behind the one taken out (`neighbourhood/replan`), asking only what can have changed.
 
-A query need not be repeated if the windows it would see differ from those it saw as follows.
+A query need not be repeated if the last window of its goal opens at the same tick, so that the same windows come first,
+or at one up to its least f, and the windows it would see differ from those it saw as follows.
 
 - Stays were taken back that it could not use. An entry that the search does not insert into its queue again changes
   nothing. Neither does an entry with a larger key than all that are popped afterwards, up to the goal: it is never
@@ -12,7 +13,8 @@ A query need not be repeated if the windows it would see differ from those it sa
 - Stays were added that leave room for the plan found. Then the same plan is found again. Each window on its path is
   still entered at the same tick from the same parent, because any other way to a window existed before, no later, and
   was rejected. Two entries of the queue are popped in the same order as before, because each is inserted when its own
-  ancestors are popped, and by induction these are popped in the same order. The query would have read everything that
+  ancestors are popped, and by induction these are popped in the same order. Of windows that come first, those entered
+  later are popped no sooner, as keys grow with the tick. The query would have read everything that
   it now reads before too, at ticks no later and with keys no larger popped behind it. So the first case still applies
   later on.
 
@@ -20,11 +22,12 @@ A plan made earlier and now under way is the same query with fewer ways to begin
 """
 
 from carp_optimized.jit.compiling import compiled, inlined
-from carp_optimized.queries.guides import guide_slot, toll_of
+from carp_optimized.queries.guides import guide_slot, key_of, toll_of
 from carp_optimized.queries.search import find_plan_by
 from carp_optimized.queries.windows import (
     end_of_run,
     evict,
+    has_same_order,
     last_by,
     plan_fits,
     reserve,
@@ -126,7 +129,7 @@ def could_use_freed(state: State, record: int, behind: int) -> bool:
     """
     freed = state.freed
     records = state.records
-    if records.expansions[record] == UNKNOWN:
+    if records.expansions[record] == UNKNOWN or not has_same_order(state, record, behind):
         return True
     if records.regions[record] & freed.regions[0] == 0:
         return False
@@ -199,7 +202,8 @@ def matters(state: State, record: int, k: int, target: int, entry: int, last_ent
     robot = int(state.records.robot[record])
     toll = toll_of(state, guide_slot(state, robot, target), target)
     largest = int(state.records.largest[k])
-    if toll < 0 or (entry << 32) + toll > largest:
+    opens = int(state.records.opens[record])
+    if toll < 0 or key_of(entry, toll, opens) > largest:
         return False
     if state.graph.capacity[target] != 1:
         return True
@@ -213,7 +217,7 @@ def matters(state: State, record: int, k: int, target: int, entry: int, last_ent
         if entry > last_entry:
             return False
         if entry + need <= windows.end[slot]:
-            return (entry << 32) + toll <= largest
+            return key_of(entry, toll, opens) <= largest
         slot += 1
     return False
 

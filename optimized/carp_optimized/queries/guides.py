@@ -7,9 +7,20 @@ unless robots in the way cost more than the detour. A query that might have look
 its end, and asks again.
 """
 
-from carp_optimized.jit.compiling import RoomExhausted, compiled
+from carp_optimized.jit.compiling import RoomExhausted, compiled, inlined
 from carp_optimized.queries.heap import push, replace_root
-from carp_optimized.state.arrays import FURTHER, LARGEST, NONE, TOO_FAR, UNREACHABLE, Guides, State
+from carp_optimized.state.arrays import (
+    FIRST,
+    FURTHER,
+    LARGEST,
+    LOW,
+    NONE,
+    TICK_BITS,
+    TOO_FAR,
+    UNREACHABLE,
+    Guides,
+    State,
+)
 
 MOST_LEVELS = 256  # the longest duration, where guides are made level by level
 
@@ -79,6 +90,19 @@ def toll_of(state: State, slot: int, resource: int) -> int:
     return (ticks << 32) + int(state.guides.rank[slot][resource])
 
 
+@inlined
+def key_of(entry: int, toll: int, opens: int) -> int:
+    """The key of `query/ties` of a window entered at that tick: windows of an f up to `opens` come first.
+
+    f fills the upper half and the rest of the toll, which is the order of (h, index), the lower. Of the windows that
+    come first, that order fills the upper part and the tick the lower, and their keys are below 0.
+    """
+    key = (entry << 32) + toll
+    if key >> 32 > opens:
+        return key
+    return ((toll & LOW) << TICK_BITS) + entry + FIRST
+
+
 @compiled
 def make_level_guide(  # noqa: C901 - one loop
     state: State, slot: int, destination: int, start: int, detour: int
@@ -90,7 +114,7 @@ def make_level_guide(  # noqa: C901 - one loop
     graph = state.graph
     ticks = state.guides.ticks[slot]
     behind = state.search.nodes
-    head = state.search.ending.nodes
+    head = state.search.back.nodes
     widest = 1 if state.last_alike else state.longest
     step = int(state.guides.pace[destination]) * (state.longest if state.last_alike else 1)
     if min(behind.size, head.size) <= max(ticks.size, widest):

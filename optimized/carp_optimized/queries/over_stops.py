@@ -1,17 +1,17 @@
 """The CARP query of a robot with several stops, or with service: A* over windows and numbers of stops served.
 
-It goes as `carp_reference.query` does, label by label. Of the shortcuts of `search` it has one: it ends where no
-windows lead back from the goal. A label is a window and a number of stops served, `window * stride + served`. What it
-has read is not noted, so its plans are not reused.
+It goes as `carp_reference.query` does, label by label. Of the shortcuts of `search` it has two: it ends where the goal
+is not free for ever in time, or no windows lead back from it. A label is a window and a number of stops served, `window
+* stride + served`. What it has read is not noted, so its plans are not reused.
 """
 
-from carp_optimized.jit.compiling import RecordsExhausted, RoomExhausted, TicksExhausted, compiled
+from carp_optimized.jit.compiling import RecordsExhausted, RoomExhausted, TicksExhausted, compiled, inlined
 from carp_optimized.jit.kinds import Ints, Longs
 from carp_optimized.queries.guides import guide_of, guide_slot
-from carp_optimized.queries.ways_back import CUT_OFF, first_look, look_back
-from carp_optimized.queries.windows import STANDING, end_of_run, is_exchange, skip_below, stand, start_of_run
-from carp_optimized.state.arrays import LARGEST, NEVER, NONE, TOO_FAR, UNKNOWN, UNREACHABLE, State
-from carp_optimized.state.records import close_record, start_record
+from carp_optimized.queries.ways_back import CUT_OFF, FEWEST, look_back
+from carp_optimized.queries.windows import STANDING, end_of_run, is_exchange, opens_at, skip_below, stand, start_of_run
+from carp_optimized.state.arrays import FIRST, LARGEST, NEVER, NONE, TOO_FAR, UNKNOWN, UNREACHABLE, State, Stops
+from carp_optimized.state.records import close_record, note_opening, start_record
 
 
 @compiled
@@ -82,9 +82,19 @@ def shortest_of(state: State, robot: int) -> int:
 
 
 @compiled
-def push(state: State, size: int, key: int, tie: int, label: int) -> None:
-    """Add an entry to the heap of `size` entries, in the order of (key, tie)."""
+def push(state: State, size: int, resource: int, served: int, tick: int, to_goal: int, opens: int, label: int) -> None:
+    """Add an entry to the heap of `size` entries, in the order of `query/ties`.
+
+    (key, tie) is (f, h; index, served), or where f is up to `opens`, (h, index; tick, served) with a key below 0.
+    """
     over = state.stops
+    stride = int(over.stride)
+    if tick + to_goal > opens:
+        key = ((tick + to_goal) << 31) + to_goal
+        tie = resource * stride + served
+    else:
+        key = FIRST + (to_goal << 31) + resource
+        tie = tick * stride + served
     if size == over.keys.size:
         raise RoomExhausted
     here = size
@@ -97,6 +107,12 @@ def push(state: State, size: int, key: int, tie: int, label: int) -> None:
     over.keys[here] = key
     over.ties[here] = tie
     over.labels[here] = label
+
+
+@inlined
+def queued_tick(stops: Stops, key: int, tie: int) -> int:
+    """The tick with which an entry of that key was added to the heap."""
+    return (key >> 31) - (key & ((1 << 31) - 1)) if key >= 0 else tie // int(stops.stride)
 
 
 @compiled
@@ -135,9 +151,18 @@ def move(keys: Longs, ties: Longs, labels: Ints, source: int, target: int) -> No
 
 @compiled
 def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
-    state: State, robot: int, resource: int, enter: int, ready: int, served: int, now: int, behind: int, latest: int
+    state: State,
+    robot: int,
+    resource: int,
+    enter: int,
+    ready: int,
+    served: int,
+    now: int,
+    behind: int,
+    latest: int,
+    is_whole: bool,
 ) -> int:
-    """A* from the resource, entered at `enter` and left from `ready` on; the label in which it ends, or `NONE`."""
+    """A* from the resource, entered at `enter` and left from `ready` on; the expansion in which it ends, or `NONE`."""
     graph = state.graph
     windows = state.windows
     stops = state.stops
@@ -149,15 +174,18 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     pace = int(state.robots.pace[robot])
     stride = int(stops.stride)
     counts_all = behind == NEVER
+    opens = opens_at(state, goal, behind) if state.parks else 0
+    state.search.opens[0] = opens
+    if is_whole:
+        opens = 0
+    elif opens > latest or opens == NEVER:
+        return NONE
     to_goal = ticks_to_goal(state, robot, resource, served)
     if to_goal < 0 or to_goal > LARGEST:
         if to_goal == UNREACHABLE:
             return NONE
         raise TicksExhausted
-    goal_window = int(windows.offset[goal]) + int(windows.size[goal]) - 1
-    next_look = first_look(state, goal_window, latest, counts_all)
-    if next_look == CUT_OFF:
-        return NONE
+    next_look = FEWEST // 2 if state.parks and counts_all and not is_whole else NEVER
     state.search.generation[0] += 1
     base = int(state.search.generation[0]) << 32
     own_slot = stand(state, resource, enter, behind)
@@ -167,29 +195,35 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     tick = ready - pace * int(graph.duration[resource])
     reached[start] = base - tick
     parent[start] = NONE
-    stops.keys[0] = ((tick + to_goal) << 31) + to_goal
-    stops.ties[0] = resource * stride + served
-    stops.labels[0] = start
+    state.search.least[0] = tick + to_goal
+    push(state, 0, resource, served, tick, to_goal, opens, start)
     size = 1
     expansions = 0
     beyond = False
     while size > 0:
         label = int(stops.labels[0])
         key = int(stops.keys[0])
+        queued = queued_tick(stops, key, int(stops.ties[0]))
         size -= 1
         drop_root(state, size)
         window = label // stride
         done = label % stride
         resource = int(windows.resource[window])
         tick = base - int(reached[label])
-        if tick + (key & ((1 << 31) - 1)) != key >> 31:
+        if tick != queued:
             continue  # reached earlier since this entry was made
+        this = expansions
         expansions += 1
         if expansions >= next_look:
-            next_look = look_back(state, robot, NONE, goal_window, 0, latest, expansions)
+            next_look = look_back(state, robot, NONE, 0, latest, expansions)
             if next_look == CUT_OFF:
                 return NONE
-        is_start = parent[label] == NONE
+        if this == stops.expanded.size:
+            raise RoomExhausted
+        stops.expanded[this] = label
+        stops.entered[this] = tick
+        stops.came[this] = parent[label]
+        is_start = label == start
         ready = tick + pace * int(graph.duration[resource])
         entry = enter if is_start else tick
         last = window if counts_all else end_of_run(state, window, behind)
@@ -197,7 +231,7 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
         if done == last_stop and resource == goal:
             leave = entry + int(stops.stay[robot])
             if end == NEVER if state.parks else now <= leave <= end:
-                return label
+                return this
         if done < last_stop and resource == stops.place[first + done]:
             until = max(ready, entry + int(stops.service[first + done]))
             other = (own_slot if is_start else window) * stride + done + 1
@@ -208,8 +242,8 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
                     beyond = True
                 elif tick + to_goal <= latest:
                     reached[other] = base - tick
-                    parent[other] = label
-                    push(state, size, ((tick + to_goal) << 31) + to_goal, resource * stride + done + 1, other)
+                    parent[other] = this
+                    push(state, size, resource, done + 1, tick, to_goal, opens, other)
                     size += 1
         slot = int(stops.slot[done])
         for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
@@ -240,9 +274,9 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
                     beyond = True
                 elif entry + to_goal <= latest:
                     reached[other] = base - entry
-                    parent[other] = label
+                    parent[other] = this
                     entered[window] = max(int(entered[window]), base - entry)
-                    push(state, size, ((entry + to_goal) << 31) + to_goal, target * stride + done, other)
+                    push(state, size, target, done, entry, to_goal, opens, other)
                     size += 1
     if beyond and latest > LARGEST:
         raise TicksExhausted
@@ -261,45 +295,59 @@ def find_over_stops(
     now: int,
     behind: int,
     latest: int,
+    is_whole: bool,
 ) -> int:
-    """The record of the plan of a robot that is in the resource, after `past` visits from `first` on, or `NONE`."""
+    """The record of the plan of a robot that is in the resource, after `past` visits from `first` on, or `NONE`.
+
+    With `is_whole` any of the same arrival, as for `WHOLE` in `carp_optimized.queries.search`.
+    """
     served = served_by(state, robot, first, past)
-    label = search_over_stops(state, robot, resource, enter, ready, served, now, behind, latest)
-    if label == NONE:
+    last = search_over_stops(state, robot, resource, enter, ready, served, now, behind, latest, is_whole)
+    if last == NONE:
         return NONE
     record = start_record(state, robot, first, past)
-    write_over_stops(state, record, label, enter)
+    write_over_stops(state, record, last, enter)
     return record
 
 
 @compiled
 def write_over_stops(state: State, record: int, last: int, enter: int) -> None:
-    """Finish a record with the path to the label `last`, the first of whose visits was entered at `enter`."""
+    """Finish a record with the path to the expansion `last`, the first of whose visits was entered at `enter`."""
     records = state.records
-    windows = state.windows
     stops = state.stops
-    stride = int(stops.stride)
-    base = int(state.search.generation[0]) << 32
     length = 0
-    label = last
-    while label != NONE:
-        before = int(stops.parent[label])
-        length += before == NONE or windows.resource[label // stride] != windows.resource[before // stride]
-        label = before
+    expansion = last
+    while expansion != NONE:
+        length += is_move(state, expansion)
+        expansion = int(stops.came[expansion])
     end = int(records.visits_at[record]) + int(records.visits[record]) + length
     if end > records.resource.size:
         raise RecordsExhausted
     k = end
-    label = last
-    while label != NONE:
-        before = int(stops.parent[label])
-        if before == NONE or windows.resource[label // stride] != windows.resource[before // stride]:
+    expansion = last
+    while expansion != NONE:
+        before = int(stops.came[expansion])
+        if is_move(state, expansion):
             k -= 1
-            records.resource[k] = windows.resource[label // stride]
-            records.enter[k] = enter if before == NONE else base - int(stops.reached[label])
-        label = before
+            records.resource[k] = resource_of(state, expansion)
+            records.enter[k] = enter if before == NONE else stops.entered[expansion]
+        expansion = before
     stay = int(stops.stay[records.robot[record]])
     records.leave[record] = NEVER if state.parks else int(records.enter[end - 1]) + stay
     records.visits[record] += length
     records.expansions[record] = UNKNOWN
+    note_opening(state, record)
     close_record(state, record)
+
+
+@compiled
+def is_move(state: State, expansion: int) -> bool:
+    """Whether an expansion begins a visit: it is the first, or one of another resource than that before it."""
+    before = int(state.stops.came[expansion])
+    return before == NONE or resource_of(state, expansion) != resource_of(state, before)
+
+
+@inlined
+def resource_of(state: State, expansion: int) -> int:
+    """The resource of an expansion."""
+    return int(state.windows.resource[int(state.stops.expanded[expansion]) // int(state.stops.stride)])

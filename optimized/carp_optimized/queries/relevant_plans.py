@@ -7,13 +7,15 @@ be used.
 
 The ticks between which stays could be used are summed up by resource, which errs on the safe side: when an expansion
 could lead into it, with the largest key popped afterwards, and when it could be left itself.
+
+The tick at which the last window of the goal opens decides which windows come first, so a plan that has left the goal
+no sooner counts too.
 """
 
 from carp_optimized.jit.compiling import compiled, inlined
 from carp_optimized.jit.kinds import Longs
-from carp_optimized.queries.guides import toll_of
-from carp_optimized.queries.search import LOW
-from carp_optimized.state.arrays import FURTHER, NEVER, NONE, PLANS, Answers, State
+from carp_optimized.queries.guides import key_of, toll_of
+from carp_optimized.state.arrays import FIRST, FURTHER, LOW, NEVER, NONE, PLANS, Answers, State
 
 QUERY, READY, UNTIL, LARGEST_KEY = range(4)
 ENTERED, LEFT = 0, 4  # where these four begin in a row of `Answers.read`
@@ -44,7 +46,7 @@ def sum_up(state: State, answers: Answers, robot: int, record: int, latest: int)
     pace = int(state.robots.pace[robot])
     goal = int(state.robots.goal[robot])
     f = latest if record == NONE else int(state.records.arrival[record])
-    largest = (f << 32) + LOW if record == NONE else 0
+    largest = (f << 32) + LOW if record == NONE else FIRST
     for k in range(int(search.expansions[0]) - 1, -1, -1):
         resource = int(search.expanded[k])
         ready = int(search.ready[k])
@@ -93,9 +95,12 @@ def could_be_used(state: State, answers: Answers, robot: int, plan: int) -> bool
 
 @inlined
 def stay_could_be_used(state: State, answers: Answers, robot: int, resource: int, enter: int, leave: int) -> bool:
-    """Whether the robot could have used the resource in the ticks of a stay."""
+    """Whether the robot could have used the resource in the ticks of a stay, or would have parked there sooner."""
     read = answers.read[resource]
     query = int(answers.used[2])
+    opens = int(state.search.opens[0])
+    if state.parks and resource == state.robots.goal[robot] and leave >= opens:
+        return True
     if read[LEFT + QUERY] == query and enter <= read[LEFT + UNTIL] and leave > read[LEFT + READY]:
         return True
     if read[ENTERED + QUERY] == query:
@@ -103,5 +108,5 @@ def stay_could_be_used(state: State, answers: Answers, robot: int, resource: int
         entry = max(int(read[ENTERED + READY]), enter - pace * int(state.graph.duration[resource]) + 1)
         if entry <= read[ENTERED + UNTIL] and entry < leave:
             toll = toll_of(state, int(state.guides.slot[state.robots.destination[robot]]), resource)
-            return toll == FURTHER or (toll >= 0 and (entry << 32) + toll <= int(read[ENTERED + LARGEST_KEY]))
+            return toll == FURTHER or (toll >= 0 and key_of(entry, toll, opens) <= int(read[ENTERED + LARGEST_KEY]))
     return False

@@ -1,17 +1,17 @@
 """The CARP query, a relative of SIPP: A* over free windows in the order of `query/ties`."""
 
-from carp_optimized.jit.compiling import RoomExhausted, TicksExhausted, compiled
+from carp_optimized.jit.compiling import RoomExhausted, TicksExhausted, compiled, inlined
 from carp_optimized.queries.blocks import below, lowest, width
-from carp_optimized.queries.ends import ENDED, end_from
-from carp_optimized.queries.guides import guide_of, guide_slot, reach_all, toll_of
+from carp_optimized.queries.guides import guide_of, guide_slot, key_of, reach_all, toll_of
 from carp_optimized.queries.heap import push, replace_root
 from carp_optimized.queries.over_stops import find_over_stops, has_goal_alone_left, has_stops
-from carp_optimized.queries.ways_back import CUT_OFF, first_look, look_back
+from carp_optimized.queries.ways_back import CUT_OFF, FEWEST, look_back
 from carp_optimized.queries.windows import (
     STANDING,
     end_of_run,
     fits,
     is_exchange,
+    opens_at,
     plan_fits,
     skip_below,
     stand,
@@ -23,6 +23,7 @@ from carp_optimized.state.arrays import (
     FURTHER,
     GROUPED,
     LARGEST,
+    LOW,
     NEVER,
     NO_LIMIT,
     NONE,
@@ -33,28 +34,29 @@ from carp_optimized.state.arrays import (
 from carp_optimized.state.records import cost_of, start_record, write_record
 
 EVERY = (1 << BLOCK) - 1
-LOW = (1 << 32) - 1
-FIRST_TRY = 32  # expansions until the end of the plan is looked for
-FEWEST_LOOKS = 64  # at windows, when it is
+NO_KEY = (NEVER << 32) + LOW  # above those of all windows
+NOTED, ALONE, WHOLE = range(3)  # what a query is asked for: see `find_any_plan`
 
 
 @compiled
 def find_plan_by(state: State, robot: int, before: int, now: int, behind: int, latest: int) -> int:
     """The record of the robot's plan that arrives by `latest`, with what the query has read: see `find_any_plan`."""
-    return find_any_plan(state, robot, before, now, behind, latest, True)
+    return find_any_plan(state, robot, before, now, behind, latest, NOTED)
 
 
 @compiled
 def find_plan_only(state: State, robot: int, before: int, now: int, latest: int) -> int:
     """The same against all reservations; its record does not note what the query has read, so that may be less."""
-    return find_any_plan(state, robot, before, now, NEVER, latest, False)
+    return find_any_plan(state, robot, before, now, NEVER, latest, ALONE)
 
 
 @compiled
-def find_any_plan(state: State, robot: int, before: int, now: int, behind: int, latest: int, is_noted: bool) -> int:
+def find_any_plan(state: State, robot: int, before: int, now: int, behind: int, latest: int, asked: int) -> int:
     """The record of the robot's plan against the reservations, or `NONE`; `before` is the plan followed until now.
 
-    A plan that is to be found must arrive by the tick `latest`.
+    A plan that is to be found must arrive by the tick `latest`. `NOTED` asks for the plan of `query/ties` with what the
+    query has read, `ALONE` for the plan, and `WHOLE` for any of the same arrival, once all windows have been expanded
+    from which the goal might be reached before.
 
     Only robots of a rank up to `behind` count. A plan that has ended stays as it is. Otherwise the visits entered by
     now are kept, and must fit the windows; a robot without a plan stands at its start since its release.
@@ -73,20 +75,21 @@ def find_any_plan(state: State, robot: int, before: int, now: int, behind: int, 
     if not fits(state, resource, enter, ready, NONE, behind):
         return NONE
     if has_stops(state, robot):
-        if not (state.shortcuts and has_goal_alone_left(state, robot, first, past)):
-            return find_over_stops(state, robot, first, past, resource, enter, ready, now, behind, latest)
-        is_noted = False
+        if asked == WHOLE or not has_goal_alone_left(state, robot, first, past):
+            is_whole = asked == WHOLE
+            return find_over_stops(state, robot, first, past, resource, enter, ready, now, behind, latest, is_whole)
+        asked = ALONE
         slot = guide_of(state, int(state.robots.destination[robot]))
     else:
         slot = guide_slot(state, robot, resource)
-    expansions = search(state, robot, slot, resource, enter, ready, behind, latest, is_noted)
+    expansions = search(state, robot, slot, resource, enter, ready, behind, latest, asked)
     if expansions == FURTHER:
         reach_all(state, slot)
-        expansions = search(state, robot, slot, resource, enter, ready, behind, latest, is_noted)
+        expansions = search(state, robot, slot, resource, enter, ready, behind, latest, asked)
     if expansions == 0:
         return NONE
     record = start_record(state, robot, first, past)
-    write_record(state, record, int(state.search.goal[0]), expansions if is_noted else UNKNOWN)
+    write_record(state, record, expansions, asked == NOTED)
     return record
 
 
@@ -147,7 +150,6 @@ def find_plan_alone(empty: State, robot: int, followed: int, now: int) -> int:
     if followed != NONE or has_stops(empty, robot):
         return find_plan_by(empty, robot, followed, now, NEVER, NEVER)
     graph = empty.graph
-    windows = empty.windows
     search = empty.search
     resource = int(empty.robots.start[robot])
     goal = int(empty.robots.goal[robot])
@@ -161,19 +163,12 @@ def find_plan_alone(empty: State, robot: int, followed: int, now: int) -> int:
     empty.counters[ASKED] += 1
     search.generation[0] += 1
     label = int(search.generation[0]) << 32
-    before = NONE
+    search.opens[0] = 0
+    search.least[0] = enter + (toll >> 32)
     expansions = 0
     while True:
-        window = int(windows.offset[resource])
-        search.reached[window] = label - enter
-        search.parent[window] = before
-        if expansions == search.expanded.size:
-            raise RoomExhausted
-        search.expanded[expansions] = resource
-        search.ready[expansions] = ready
-        search.popped[expansions] = (enter << 32) + toll
-        expansions += 1
-        before = window
+        search.reached[int(empty.windows.offset[resource])] = label - enter
+        expansions = note_expansion(empty, expansions, resource, enter, ready, expansions - 1, (enter << 32) + toll)
         if resource == goal:
             break
         toll = NO_LIMIT
@@ -186,21 +181,21 @@ def find_plan_alone(empty: State, robot: int, followed: int, now: int) -> int:
         ready = enter + pace * int(graph.duration[resource])
     search.expansions[0] = expansions
     record = start_record(empty, robot, 0, 0)
-    write_record(empty, record, before, expansions)
+    write_record(empty, record, expansions, True)
     return record
 
 
-@compiled
-def end_early(state: State, expansions: int, window: int, ready: int, key: int) -> int:
-    """End a search in the window of the goal, as if it had been expanded next; the number of expansions."""
+@inlined
+def note_expansion(state: State, expansions: int, resource: int, enter: int, ready: int, came: int, key: int) -> int:
+    """Note the next expansion of a search, which came from the expansion `came`; how many there are then."""
     search = state.search
     if expansions == search.expanded.size:
         raise RoomExhausted
-    search.expanded[expansions] = state.windows.resource[window]
+    search.expanded[expansions] = resource
+    search.entered[expansions] = enter
     search.ready[expansions] = ready
+    search.came[expansions] = came
     search.popped[expansions] = key
-    search.goal[0] = window
-    search.expansions[0] = expansions + 1
     return expansions + 1
 
 
@@ -214,25 +209,33 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
     ready: int,
     behind: int,
     latest: int,
-    is_noted: bool,
+    asked: int,
 ) -> int:
     """A* from the resource, entered at `enter` and left from `ready` on; the number of expansions, 0: no plan.
 
+    The last of them is the window in which the plan ends.
+
     It is `FURTHER` where a window that the guide does not reach might be expanded next. The guide reaches all that is
-    as near to the goal as the resource from which it is entered, so the f of that window is no less than if that were
-    all that is left to go. With an f above those that are expanded, it would have waited in the queue.
+    as near to the goal as the resource from which it is entered, so the key of that window is no less than if that were
+    all that is left to go. With a key above those that are expanded, it would have waited in the queue. So would it
+    while windows of an f up to `opens` are left, as its h is larger than theirs.
 
     A window of a larger f than `latest` is in no plan that arrives by then, nor is one expanded before the goal of such
     a plan is: no window of that kind is put into the queue, and the windows expanded stay the same.
-    The window in which the plan ends is then `goal[0]`. The window in which the robot stands can be entered again
-    if it has stayed at its goal for too long to end there; otherwise entering it again leads nowhere new.
-    A robot that parks ends its plan in the last window of its goal. Once that is entered at its first tick, no other
-    parent can enter it earlier, so the plan is known, and the search ends: all windows of a smaller f, which may be
-    those of the whole map if the goal is crossed late, would be expanded in vain. Where the plan's record does not note
-    what the search reads, `carp_optimized.queries.ends` looks for such an end now and then. In the same way
-    `carp_optimized.queries.ways_back` looks whether there is a plan at all; where it finds that there is none,
-    `expansions[0]` is 0, as not all is known that this depends on. A noted query for plans by a tick is asked why there
-    is none, so it does not look.
+    The window in which the robot stands can be entered again if it has stayed at its goal for too long to end there;
+    otherwise entering it again leads nowhere new.
+
+    A robot that parks ends its plan in the last window of its goal. Windows of an f up to the tick at which that opens
+    come first, whatever their f. One of them may be entered earlier once it has been expanded; then it is expanded
+    again. A plan is a chain of expansions, so what the first led to keeps its way. The last window of the goal, entered
+    as it opens, has the smallest key of all but earlier windows of the goal, which do not lead to it any earlier: the
+    search ends at once. Where no window of an f up to that tick is left, each has its smallest g, and A* goes on as
+    ever.
+
+    `carp_optimized.queries.ways_back` looks now and then whether there is a plan at all; where it finds that there is
+    none, `expansions[0]` is `UNKNOWN`, as not all is known that this depends on. A noted query for plans by a tick is
+    asked why there is none, so it does not look. Where the goal is not free for ever by `latest`, nothing is expanded.
+
     The best of the windows reached last waits outside the heap, for it is often the next. Windows between which there
     are only robots behind are one: from `window`, by which it is known, to `tail`.
     """
@@ -242,7 +245,6 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
     parent = state.search.parent
     keys = state.search.keys
     nodes = state.search.nodes
-    expanded = state.search.expanded
     goal = int(state.robots.goal[robot])
     pace = int(state.robots.pace[robot])
     parks = state.parks
@@ -251,19 +253,22 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
     alike = pace * state.longest if state.last_alike else 0
     is_bounded = latest <= LARGEST
     largest_key = (latest << 32) + LOW
-    last_goal = goal if parks and state.shortcuts else NONE
-    goal_window = int(windows.offset[goal]) + int(windows.size[goal]) - 1
-    next_try = FIRST_TRY if last_goal != NONE and counts_all and not is_noted else NEVER
-    next_look = NEVER if is_noted and is_bounded else first_look(state, goal_window, latest, counts_all)
     state.search.expansions[0] = 0
-    if next_look == CUT_OFF:
+    opens = opens_at(state, goal, behind) if parks else 0
+    state.search.opens[0] = opens
+    if asked == WHOLE:
+        opens = 0
+    elif opens > latest or opens == NEVER:
         return 0
-
     toll = toll_of(state, slot, resource)
     if toll < 0:
         if toll == TOO_FAR:
             raise TicksExhausted
         return 0
+    state.search.least[0] = enter + (toll >> 32)
+    last_goal = goal if opens > 0 else NONE
+    may_look = parks and counts_all and (asked == ALONE or (asked == NOTED and not is_bounded))
+    next_look = FEWEST // 2 if may_look else NEVER
     generation = int(state.search.generation[0]) + 1
     state.search.generation[0] = generation
     label = generation << 32
@@ -274,12 +279,12 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
     reached[STANDING] = label - enter
     parent[STANDING] = NONE
     best = STANDING
-    best_key = (enter << 32) + toll
+    best_key = key_of(enter, toll, opens)
     if best_key > largest_key:
         return 0
     size = 0
     expansions = 0
-    unseen = NO_LIMIT
+    unseen = NO_KEY
     beyond = False
     while True:
         if size > 0 and keys[0] < best_key:
@@ -299,47 +304,35 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
         best_key = NO_LIMIT
         resource = int(windows.resource[node])
         enter = label - int(reached[node])
-        if key != (enter << 32) + toll_of(state, slot, resource):
+        toll = toll_of(state, slot, resource)
+        if key != key_of(enter, toll, opens):
             continue  # entered earlier since this entry was made
-        next_f = key >> 32
-        if next_f >= unseen:
+        if key >= unseen:
             return FURTHER
-        if expansions >= next_try:
-            next_try = expansions + expansions // 2
-            looks = FEWEST_LOOKS + expansions // 8
-            end = end_from(state, robot, slot, goal_window, own_slot, next_f, min(latest, LARGEST), looks)
-            if end == FURTHER:
-                return FURTHER
-            if end == ENDED:
-                state.search.goal[0] = goal_window
-                state.search.expansions[0] = expansions
-                return expansions
         if expansions >= next_look:
-            next_look = look_back(state, robot, slot, goal_window, next_f, latest, expansions)
+            next_look = look_back(state, robot, slot, max(key >> 32, 0), latest, expansions)
             if next_look == CUT_OFF:
+                state.search.expansions[0] = UNKNOWN
                 return 0
         last = node if counts_all else end_of_run(state, node, behind)
         end = int(windows.end[last])
         if expansions > 0:
             ready = enter + (alike if alike > 0 else pace * int(graph.duration[resource]))
-        if expansions == expanded.size:
-            raise RoomExhausted
-        expanded[expansions] = resource
-        state.search.ready[expansions] = ready
-        state.search.popped[expansions] = key
-        expansions += 1
+        this = expansions
+        expansions = note_expansion(state, this, resource, enter, ready, int(parent[node]), key)
         if resource == goal and (end == NEVER if parks else not (overstayed and node == STANDING)):
-            state.search.goal[0] = node
             state.search.expansions[0] = expansions
             return expansions
         source = int(windows.source[last])
         exchanges = several and (graph.capacity[resource] != 1 or graph.capacity[source] == GROUPED)
+        to_go = toll & ~LOW
         for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
             target = int(graph.target[edge])
             toll = toll_of(state, slot, target)
             if toll < 0:
                 if toll == FURTHER:
-                    unseen = min(unseen, ready + next_f - enter)
+                    further = (ready << 32) + to_go
+                    unseen = min(unseen, further if further >> 32 > opens else 0)
                 beyond |= toll == TOO_FAR
                 continue
             if is_bounded and (ready << 32) + toll > largest_key:
@@ -386,13 +379,15 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
                 if entry > LARGEST or entry + (toll >> 32) > LARGEST:
                     beyond = True
                     continue
-                key = (entry << 32) + toll
+                key = key_of(entry, toll, opens)
                 if key > largest_key:
                     break
                 reached[window] = label - entry
-                parent[window] = node
-                if until == NEVER and target == last_goal and entry == windows.start[window]:
-                    return end_early(state, expansions, window, entry + need, key)
+                parent[window] = this
+                if until == NEVER and target == last_goal and entry == opens:
+                    expansions = note_expansion(state, expansions, target, entry, entry + need, this, key)
+                    state.search.expansions[0] = expansions
+                    return expansions
                 if key < best_key:
                     if best != NONE:
                         push(keys, nodes, size, best_key, best)
@@ -402,7 +397,7 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
                 else:
                     push(keys, nodes, size, key, window)
                     size += 1
-    if unseen <= latest:
+    if unseen <= largest_key and unseen < NO_KEY:
         return FURTHER
     if beyond and not is_bounded:
         raise TicksExhausted

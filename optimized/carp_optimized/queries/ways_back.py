@@ -8,7 +8,7 @@ whatever they forbid besides. The latest `until` comes first, so each window is 
 are among them and entered by their `until`, beginning with the last. The first is the one in which the robot stands,
 which the query has entered. So if none of them is entered by its `until`, there is no plan.
 
-Windows are left out that come too late. Let F be the f of the entry of the queue that is next. Whatever the query
+Windows are left out that come too late. Let F be the least f in the queue, where it is known. Whatever the query
 enters from now on has no smaller f, so it enters a window q at F - h(q) or later. If it has not entered q by its
 `until`, and that is later, q is in no plan.
 
@@ -16,55 +16,50 @@ The look ends at a window that is entered by then, for the goal is likely to be 
 """
 
 from carp_optimized.jit.compiling import compiled
-from carp_optimized.queries.ends import entry_of
 from carp_optimized.queries.guides import toll_of
 from carp_optimized.queries.heap import push, replace_root
 from carp_optimized.queries.windows import skip_below
 from carp_optimized.state.arrays import NEVER, NONE, State
 
 CUT_OFF = 0
-LOOKS = 2  # the count, beside those of `ends`
 FEWEST = 64  # windows that any look may take
 
 
 @compiled
-def first_look(state: State, goal_window: int, latest: int, counts_all: bool) -> int:
-    """The expansions of a query until the first look; `CUT_OFF` if the goal is not free by `latest`, and for ever.
-
-    There is no look where robots vanish, or not all of them count.
-    """
-    if not (state.parks and state.shortcuts and counts_all):
-        return NEVER
-    is_free = state.windows.end[goal_window] == NEVER and state.windows.start[goal_window] <= latest
-    return FEWEST // 2 if is_free else CUT_OFF
+def entry_of(state: State, window: int) -> int:
+    """The tick at which the query enters a window until now; `NEVER` if it does not."""
+    entry = (int(state.search.generation[0]) << 32) - int(state.search.reached[window])
+    return min(entry, NEVER)
 
 
 @compiled
-def look_back(state: State, robot: int, slot: int, goal_window: int, next_f: int, latest: int, expansions: int) -> int:
+def look_back(state: State, robot: int, slot: int, next_f: int, latest: int, expansions: int) -> int:
     """The expansions of a query until the next look; `CUT_OFF` if no windows lead back to one that it has entered.
 
-    A plan is to enter the last window of the goal by the tick `latest`. `next_f` is the f of the entry of the query's
-    queue that is next, with the h of the guide in the slot; the slot is `NONE` if h is not that of a guide. A look
-    takes at most `FEWEST` windows and a quarter of those that the query has expanded.
+    All robots count, and a plan is to enter the last window of the goal, which is free for ever, by the tick `latest`.
+    No entry of the query's queue has an f below `next_f`, with the h of the guide in the slot; the slot is `NONE` if h
+    is not that of a guide. A look takes at most `FEWEST` windows and a quarter of those that the query has expanded.
     """
     graph = state.graph
     windows = state.windows
-    ending = state.search.ending
+    back = state.search.back
+    goal = int(state.robots.goal[robot])
+    goal_window = int(windows.offset[goal]) + int(windows.size[goal]) - 1
     pace = int(state.robots.pace[robot])
     latest = min(latest, NEVER - 1)
     left = FEWEST + expansions // 4
-    ending.counts[LOOKS] += 1
-    look = int(ending.counts[LOOKS]) << 32
-    ending.until_by_window[goal_window] = look + latest
-    ending.keys[0] = -latest
-    ending.nodes[0] = goal_window
+    back.looks[0] += 1
+    look = int(back.looks[0]) << 32
+    back.until[goal_window] = look + latest
+    back.keys[0] = -latest
+    back.nodes[0] = goal_window
     size = 1
     while size > 0:
-        until = -int(ending.keys[0])
-        window = int(ending.nodes[0])
+        until = -int(back.keys[0])
+        window = int(back.nodes[0])
         size -= 1
-        replace_root(ending.keys, ending.nodes, size, int(ending.keys[size]), int(ending.nodes[size]))
-        if ending.until_by_window[window] != look + until:
+        replace_root(back.keys, back.nodes, size, int(back.keys[size]), int(back.nodes[size]))
+        if back.until[window] != look + until:
             continue  # it has a later one since this entry was made
         if entry_of(state, window) <= until:
             return NEVER
@@ -84,9 +79,9 @@ def look_back(state: State, robot: int, slot: int, goal_window: int, next_f: int
                 last = min(until, int(windows.end[before]))
                 entry = min(entry_of(state, before), max(int(windows.start[before]), from_now_on))
                 is_long = last >= max(opens, entry + need)
-                if is_long and ending.until_by_window[before] < look + last - need:
-                    ending.until_by_window[before] = look + last - need
-                    push(ending.keys, ending.nodes, size, need - last, before)
+                if is_long and back.until[before] < look + last - need:
+                    back.until[before] = look + last - need
+                    push(back.keys, back.nodes, size, need - last, before)
                     size += 1
                 before += 1
     return CUT_OFF

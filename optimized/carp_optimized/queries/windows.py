@@ -408,6 +408,37 @@ def start_of_run(state: State, slot: int, behind: int) -> int:
 
 
 @compiled
+def opens_at(state: State, resource: int, behind: int) -> int:
+    """The tick from which on the resource is free for ever to a robot planned behind that rank; `NEVER`: from none."""
+    windows = state.windows
+    size = int(windows.size[resource])
+    last = int(windows.offset[resource]) + size - 1
+    if size == 0 or windows.end[last] < NEVER:
+        return NEVER
+    return int(windows.start[start_of_run(state, last, behind)])
+
+
+@compiled
+def has_same_order(state: State, record: int, behind: int) -> bool:
+    """Whether the query of the plan, asked again behind that rank, would give windows the same keys of `query/ties`.
+
+    Where robots park, they depend on when the last window of the goal opens, but not if no f is smaller: those of the
+    least f come first in any case, in the same order.
+    """
+    if not state.parks:
+        return True
+    opens = opens_at(state, int(state.robots.goal[state.records.robot[record]]), behind)
+    before = int(state.records.opens[record])
+    return opens == before or max(opens, before) <= state.records.least[record]
+
+
+@compiled
+def still_found(state: State, record: int) -> bool:
+    """Whether the plan found by a query against fewer plans fits the windows, and is found again."""
+    return has_same_order(state, record, NEVER) and plan_fits(state, record)
+
+
+@compiled
 def stand(state: State, resource: int, enter: int, behind: int) -> int:
     """Copy the window around the tick into the slot `STANDING`; return its own slot."""
     windows = state.windows

@@ -10,13 +10,15 @@ from carp_optimized.jit.kinds import Ints, IntTable, Longs, LongTable, Numbers
 
 NEVER = 2**31 - 1  # the end of what lasts for ever
 LARGEST = 2**30 - 1  # of ticks and durations: the sum of two is still below NEVER
+TICK_BITS = 30  # of a tick up to LARGEST
+LOW = 2**32 - 1  # the lower half of a key
+FIRST = -(2**62)  # the least key: those of windows that come first fill what is below 0
 NONE = -1  # no resource, no record, no slot
 GROUPED = 0  # the capacity of a resource of groups: those of its constraints are elsewhere
 UNKNOWN = -1  # the number of expansions of a plan that no query of the fleet has made
 
 SEVERAL = -2  # the source of stays that came from several resources
 BLOCK = 8  # windows are looked at in blocks
-MOST_GATHERED = 1024  # windows at the end of a query
 
 UNREACHABLE = -1  # a guide: the goal cannot be reached from the resource
 TOO_FAR = -2  # a guide: it can, in more than LARGEST ticks
@@ -114,7 +116,8 @@ class Stops(NamedTuple):
     A stop has a place, ticks of service, and a destination, whose guide no robot with a goal alone uses; `stay[robot]`
     is what the last visit takes. The rest is scratch (`carp_optimized.queries.over_stops`): by number of stops served,
     the `slot` of the guide to the next, and the ticks from there to the goal, the `rest`; by label, of which a window
-    has `stride`, `reached` and `parent` as in `Search`; and the heap.
+    has `stride`, `reached` and `parent` as in `Search`; by expansion, the label `expanded`, the tick at which it was
+    `entered`, and the expansion from which it `came`; and the heap.
     """
 
     first: Ints
@@ -127,6 +130,9 @@ class Stops(NamedTuple):
     rest: Longs
     reached: Longs
     parent: Ints
+    expanded: Ints
+    entered: Ints
+    came: Ints
     keys: Longs
     ties: Longs
     labels: Ints
@@ -153,24 +159,15 @@ class Guides(NamedTuple):
     detour: int
 
 
-class Ending(NamedTuple):
-    """The scratch of looking for the end of a query (`carp_optimized.queries.ends`).
+class WaysBack(NamedTuple):
+    """The scratch of looks at ways back from a goal (`carp_optimized.queries.ways_back`).
 
-    `gathered` are windows, with what they had for `reached` and `parent` before; `place` is where a window is among
-    them, if it is. By place: `until`, the last entry that counts; `is_due`, whether what leads there is still to be
-    looked at; `trace`, the number of the last trace that has met the window. `keys` and `nodes` are a heap.
-    `until_by_window` is of the last look at ways back: its number times 2^32 plus the tick.
+    `looks[0]` is their number; `until` of a window is that of the look that met it last, times 2^32, plus the tick by
+    which it must be entered. `keys` and `nodes` are a heap.
     """
 
-    gathered: Ints
-    place: Ints
-    reached: Longs
-    parent: Ints
-    until: Ints
-    is_due: Ints
-    trace: Longs
-    until_by_window: Longs
-    counts: Longs
+    looks: Longs
+    until: Longs
     keys: Longs
     nodes: Ints
 
@@ -179,22 +176,27 @@ class Search(NamedTuple):
     """The scratch of a query, never cleared: what an earlier query wrote has an earlier generation.
 
     `reached[slot]` is the generation times 2^32 minus the tick at which the window is entered, so that a larger
-    label is an earlier entry or a newer query; `parent[slot]` is the window it is entered from, and `goal[0]` the one
-    in which the plan found ends. `keys` and `nodes` are the heap. `expanded`, `ready` and `popped` list the resources
-    that were expanded, the tick from which on each was left, and its key; `expansions[0]` is their number.
+    label is an earlier entry or a newer query; `parent[slot]` is the expansion it is entered from. `keys` and `nodes`
+    are the heap. `expanded`, `entered`, `ready`, `came` and `popped` list the resources that were expanded, the ticks
+    at which each was entered and from which on it was left, the expansion before it on the way, and its key;
+    `expansions[0]` is their number, or `UNKNOWN`. Where the robot parks, `opens[0]` is the tick at which the last
+    window of its goal opens, and no expansion has an f below `least[0]`.
     """
 
     generation: Longs
-    goal: Longs
+    opens: Longs
+    least: Longs
     reached: Longs
     parent: Ints
     keys: Longs
     nodes: Ints
     expanded: Ints
+    entered: Ints
     ready: Ints
+    came: Ints
     popped: Longs
     expansions: Longs
-    ending: Ending
+    back: WaysBack
 
 
 class Records(NamedTuple):
@@ -207,8 +209,8 @@ class Records(NamedTuple):
     the goal.
     The expansions are entries of `expanded`, `ready`, `until` and
     `largest` from `expansions_at[record]` on: a resource, the first and last tick at which leaving it could matter, and
-    the largest key popped after it; `regions[record]` has the bits of their regions. `used` counts records, visits
-    and expansions.
+    the largest key popped after it; `regions[record]` has the bits of their regions. `opens` and `least` are those of
+    the search. `used` counts records, visits and expansions.
     """
 
     robot: Ints
@@ -219,6 +221,8 @@ class Records(NamedTuple):
     expansions_at: Longs
     expansions: Ints
     regions: Longs
+    opens: Ints
+    least: Ints
     spots: LongTable
     resource: Ints
     enter: Ints
@@ -256,8 +260,7 @@ class State(NamedTuple):
     No duration is above `longest`, and none below, if they `last_alike`. The toll of a resource is its ticks to the
     goal times `scale` plus its index, if `scale` is not 0. `roots` are the terms of `neighbourhood/distance` of small
     squares; all are split after `split` bits. A place is free for `gap` ticks before another robot enters it: then
-    windows begin and end so much later and earlier, and may be of negative length. With `shortcuts` a query leaves out
-    what its plan does not depend on.
+    windows begin and end so much later and earlier, and may be of negative length.
     """
 
     graph: Graph
@@ -280,7 +283,6 @@ class State(NamedTuple):
     split: int
     parks: bool
     gap: int
-    shortcuts: bool
 
 
 class Work(NamedTuple):

@@ -111,6 +111,9 @@ def encode_stops(instance: Instance, destination: Ints) -> Stops:
         rest=np.zeros(most, np.int64),
         reached=np.zeros(0, np.int64),
         parent=np.zeros(0, np.int32),
+        expanded=np.zeros(0, np.int32),
+        entered=np.zeros(0, np.int32),
+        came=np.zeros(0, np.int32),
         keys=np.zeros(0, np.int64),
         ties=np.zeros(0, np.int64),
         labels=np.zeros(0, np.int32),
@@ -275,8 +278,8 @@ def split_of_terms(graph: Graph) -> int:
     return max(0, largest.bit_length() - 31)
 
 
-def encode(instance: Instance, *, shortcuts: bool) -> State:
-    """A state in which no plan is reserved, whose queries take shortcuts or expand all that they may."""
+def encode(instance: Instance) -> State:
+    """A state in which no plan is reserved."""
     graph = encode_graph(instance)
     robots, goals, paces, of_stops = encode_robots(instance)
     stops = encode_stops(instance, of_stops)
@@ -306,7 +309,6 @@ def encode(instance: Instance, *, shortcuts: bool) -> State:
         split=split_of_terms(graph),
         parks=instance.after_goal == "park",
         gap=instance.gap,
-        shortcuts=shortcuts,
     )
 
 

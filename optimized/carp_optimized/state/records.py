@@ -3,7 +3,7 @@
 from carp_optimized.jit.compiling import RecordsExhausted, compiled, entry
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
-from carp_optimized.state.arrays import NEVER, NONE, UNKNOWN, Records, State
+from carp_optimized.state.arrays import FIRST, NEVER, NONE, UNKNOWN, Records, State
 from carp_optimized.state.groups import meet, share_group
 from carp_optimized.state.natives import state_at
 
@@ -39,26 +39,24 @@ def first_visits(state: State, record: int, count: int) -> int:
 
 
 @compiled
-def write_record(state: State, record: int, last: int, expansions: int) -> None:
-    """Finish a record with the path to the window `last` and with what the search has expanded, if that is noted."""
+def write_record(state: State, record: int, expansions: int, is_noted: bool) -> None:
+    """Finish a record with the path to the last expansion and, if that is noted, with all expansions."""
     records = state.records
-    windows = state.windows
     search = state.search
-    label = int(search.generation[0]) << 32
     length = 0
-    node = last
-    while node != NONE:
+    expansion = expansions - 1
+    while expansion != NONE:
         length += 1
-        node = int(search.parent[node])
+        expansion = int(search.came[expansion])
     end = int(records.visits_at[record]) + int(records.visits[record]) + length
-    if end > records.resource.size or int(records.used[2]) + expansions > records.expanded.size:  # `UNKNOWN` is below 0
+    if end > records.resource.size or (is_noted and int(records.used[2]) + expansions > records.expanded.size):
         raise RecordsExhausted
-    node = last
+    expansion = expansions - 1
     for k in range(end - 1, end - 1 - length, -1):
-        records.resource[k] = windows.resource[node]
-        records.enter[k] = label - search.reached[node]
-        node = int(search.parent[node])
-    goal = int(windows.resource[last])
+        records.resource[k] = search.expanded[expansion]
+        records.enter[k] = search.entered[expansion]
+        expansion = int(search.came[expansion])
+    goal = int(search.expanded[expansions - 1])
     robot = int(records.robot[record])
     records.leave[record] = (
         NEVER
@@ -67,10 +65,18 @@ def write_record(state: State, record: int, last: int, expansions: int) -> None:
     )
     records.visits[record] += length
     close_record(state, record)
-    if expansions == UNKNOWN:
-        records.expansions[record] = UNKNOWN
-    else:
+    note_opening(state, record)
+    if is_noted:
         write_expansions(state, record, expansions)
+    else:
+        records.expansions[record] = UNKNOWN
+
+
+@compiled
+def note_opening(state: State, record: int) -> None:
+    """Note from when on the goal was free for ever to the query, and the least f of what it has expanded."""
+    state.records.opens[record] = state.search.opens[0]
+    state.records.least[record] = state.search.least[0]
 
 
 @compiled
@@ -89,7 +95,7 @@ def write_expansions(state: State, record: int, expansions: int) -> None:
     records.expansions_at[record] = first
     records.expansions[record] = expansions
     records.used[2] = first + expansions
-    largest = 0
+    largest = FIRST
     regions = 0
     for k in range(expansions - 1, -1, -1):
         resource = int(search.expanded[k])
@@ -199,6 +205,26 @@ def clash(state: State, one: int, other: int) -> bool:
             return False
 
 
+@compiled
+def delays_parking(state: State, record: int, other: int) -> bool:
+    """Whether, beside another plan, the query of a plan would give windows other keys of `query/ties`.
+
+    It does if the last window of its goal opens later then, at a tick that is above the least f.
+    """
+    if not state.parks:
+        return False
+    records = state.records
+    goal = int(state.robots.goal[records.robot[record]])
+    first = int(records.visits_at[other])
+    last = first + int(records.visits[other]) - 1
+    for k in range(first, last + 1):
+        resource = int(records.resource[k])
+        leave = (int(records.enter[k + 1]) if k < last else int(records.leave[other])) + state.gap
+        if meet(state.graph, resource, goal) and leave > records.opens[record] and leave > records.least[record]:
+            return True
+    return False
+
+
 @entry
 def keep_records(native: Native[State], kept: Ints) -> None:
     """Forget all records but those kept, which are reserved; they are numbered again, in their order.
@@ -225,6 +251,8 @@ def keep_records(native: Native[State], kept: Ints) -> None:
             visits += 1
         records.expansions[number] = records.expansions[record]
         records.regions[number] = records.regions[record]
+        records.opens[number] = records.opens[record]
+        records.least[number] = records.least[record]
         first = int(records.expansions_at[record])
         records.expansions_at[number] = expansions
         for k in range(first, first + int(records.expansions[record])):

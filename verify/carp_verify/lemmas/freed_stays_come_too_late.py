@@ -7,9 +7,10 @@ plan found, the search ends before it sees a difference. An exchange freed with 
 the robot taken back left s for the resource expanded, and where it is not after `ready`, the robot taken back stood in
 the way of waiting there, so that the resource expanded counts as freed itself.
 
-By hand: that every difference between the two searches begins with such an entry, leave or exchange, and that the f of
-what follows from it is no less than its own, by induction over expansions, as h(r) <= d(r) + h(s) for each move. Tests
-compare searches before and after stays are freed on small graphs, and notice a bound that is larger by one.
+By hand: that every difference between the two searches begins with such an entry, leave or exchange, if the goal is
+free for ever from the same tick on, so that the same windows come first (`query/ties`); and that the f of what follows
+from it is no less than its own, by induction over expansions, as h(r) <= d(r) + h(s) for each move. Tests compare
+searches before and after stays are freed on small graphs, and notice a bound that is larger by one.
 """
 
 from collections.abc import Iterator, Sequence
