@@ -160,7 +160,7 @@ def test_a_plan_found_against_other_plans_is_judged_by_what_its_own_query_read(r
 
 PARKED = [
     (Grid(10, 10, map=20), Fleet(robots=30, seed=11), Traits(duration=Range(1, 3)), Neighbourhood(m=7, sample=20)),
-    (Grid(10, 10, map=5), Fleet(robots=50, seed=12), Traits(capacity=Range(1, 2)), Neighbourhood(baseline=False)),
+    (Grid(10, 10, map=5), Fleet(robots=50, seed=12), Traits(capacity=Range(1, 2)), Neighbourhood(m=4, baseline=False)),
     (Grid(8, 8, map=5), Fleet(robots=12, seed=13), Traits(), Neighbourhood(m=7, sample=20)),
     (Grid(10, 10, map=10), Fleet(robots=12, seed=250), Traits(capacity=Range(1, 2)), Neighbourhood(m=2)),
     (Grid(8, 8, map=3), Fleet(robots=32, seed=539), Traits(), Neighbourhood(m=7, sample=20)),
@@ -168,7 +168,7 @@ PARKED = [
         Grid(10, 10, map=10),
         Fleet(robots=30, seed=666, release=Range(0, 5), pace=Range(1, 2)),
         Traits(),
-        Neighbourhood(baseline=False),
+        Neighbourhood(m=4, baseline=False),
     ),
 ]
 
