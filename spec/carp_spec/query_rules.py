@@ -44,7 +44,8 @@ def absence_is_true(instance: Instance, committed: Sequence[Plan], rivals: Itera
     " the robot may leave, less the duration: the tick of entering the window, or a later one after a long service. h"
     " is the least ticks from entering its resource, over the stops left, to entering the goal on the empty graph. "
     "Where robots park, no plan ends before the last window of the goal opens: windows of an f up to that tick come "
-    "before all others, and of these the smallest h first, then the smallest index, then the smallest g. "
+    "before all others, and of these the smallest h first, then the smallest index, then the smallest g. One that is "
+    "entered earlier once it has been expanded is expanded again; what it led to before keeps its way. "
     "The smallest g is enough: who may leave earlier can wait, and only who has just entered ends, or serves a stop.",
     "decision of carproof",
 )
