@@ -56,8 +56,7 @@ class ColumnGeneration:
         self.known: set[tuple[int, bytes, bytes]] = set()
         self.cells = self.column = np.zeros(0, np.int64)  # of all columns, one after the other
         self.cell_of_row = self.row_of_cell = np.zeros(0, np.int64)
-        self.deadlines: list[Deadlines] = []
-        self.row_of_deadlines: list[int] = []
+        self.deadlines: list[tuple[int, Deadlines]] = []  # each with its row
         self.members: defaultdict[int, list[tuple[int, Member]]] = defaultdict(list)
         self.best = -1
         self.kept: tuple[Longs, Floats, Floats] = self.cells, np.zeros(0), np.zeros(0)
@@ -93,7 +92,7 @@ class ColumnGeneration:
         cells, best, best_fees = self.kept
         duals = np.zeros(self.programme.rows)
         duals[: self.programme.duals.size] = np.maximum(self.programme.duals, 0)
-        fees = duals[np.array(self.row_of_deadlines, np.int64)]
+        fees = duals[np.array([row for row, _ in self.deadlines], np.int64)]
         prices = duals[self.row_of_cell]
         if self.best >= 0:
             prices *= 1 - kept
@@ -188,8 +187,7 @@ class ColumnGeneration:
 
     def add_deadlines(self) -> None:
         """Add rows for the deadlines that the search for prices has more."""
-        new = self.search.deadlines[len(self.row_of_deadlines) :]
-        for each in new:
+        for each in self.search.deadlines[len(self.deadlines) :]:
             columns, counts = [], []
             for number, column in enumerate(self.columns):
                 count = sum(m.robot == column.robot and self._keeps(m, column) for m in each.members)
@@ -198,20 +196,17 @@ class ColumnGeneration:
                     counts.append(count)
             rows = [np.array(columns, np.int64)], [np.array(counts, np.int64)]
             row = self.programme.add_rows(UNBOUNDED, [len(each.members) - 1], *rows)
-            self.row_of_deadlines.append(row)
+            self.deadlines.append((row, each))
             for member in each.members:
                 self.members[member.robot].append((row, member))
-        self.deadlines += new
 
     def keep_deadlines(self) -> None:
         """Drop the rows of deadlines that the search for prices has dropped."""
         kept = {tuple(each.members) for each in self.search.deadlines}
-        rows = dict(zip(self.row_of_deadlines, self.deadlines, strict=True))
-        dropped = {row for row, each in rows.items() if tuple(each.members) not in kept}
+        dropped = {row for row, each in self.deadlines if tuple(each.members) not in kept}
         for row in dropped:
             self.programme.drop_row(row)
-        self.deadlines = [*self.search.deadlines]
-        self.row_of_deadlines = [row for row in self.row_of_deadlines if row not in dropped]
+        self.deadlines = [(row, each) for row, each in self.deadlines if row not in dropped]
         for members in self.members.values():
             members[:] = [(row, member) for row, member in members if row not in dropped]
         self.best = -1
