@@ -31,6 +31,7 @@ ALSO = {
     "carp_spec.instance_rules": ("spec/test_plan_rules", "oracle/test_assign"),
     "carp_spec.plan_rules": ("spec/test_check", "verify/test_rules_as_properties"),
     "carp_spec.joint_rules": ("spec/test_check",),
+    "carp_spec.query_rules": ("verify/test_rules_as_properties",),
     "carp_spec.rule": ("spec/test_check",),
     "carp_spec.requests": ("oracle/test_assign",),
     "carp_spec.execution.logs": ("oracle/test_check_log",),

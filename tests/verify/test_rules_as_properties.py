@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Any, TypeAlias
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
 
@@ -187,6 +187,7 @@ def test_costs_are_the_ticks_before_the_last_visits(planned: PlannedInstance, cl
 
 @settings(max_examples=draws(200))
 @given(st.lists(st.tuples(*[st.integers(0, 2)] * 4), min_size=1))
+@example([(0, 0, 1, 0), (1, 1, 0, 0)])
 def test_what_is_expanded_first_is_best_in_each_respect_among_its_equals(
     nodes: list[tuple[int, int, int, int]],
 ) -> None:
@@ -199,6 +200,7 @@ def test_what_is_expanded_first_is_best_in_each_respect_among_its_equals(
 
 @settings(max_examples=draws(200))
 @given(st.lists(st.tuples(*[st.integers(0, 3)] * 3), min_size=1), st.integers(0, 4))
+@example([(0, 0, 0), (0, 1, 0)], 0)
 def test_before_a_goal_is_free_for_ever_the_nearest_window_is_expanded_first(
     nodes: list[tuple[int, int, int]], opens: int
 ) -> None:
