@@ -11,6 +11,7 @@ from carp_optimized.jit.kinds import Ints
 from carp_optimized.queries.blocks import below, width
 from carp_optimized.state.arrays import BLOCK, GROUPED, NEVER, NONE, Graph, Records, Rows, State
 from carp_optimized.state.groups import are_close, is_within
+from carp_optimized.state.records import has_order
 
 STANDING = 0  # the slot of no row: a copy of the window in which the robot is when it sets out
 
@@ -420,16 +421,11 @@ def opens_at(state: State, resource: int, behind: int) -> int:
 
 @compiled
 def has_same_order(state: State, record: int, behind: int) -> bool:
-    """Whether the query of the plan, asked again behind that rank, would give windows the same keys of `query/ties`.
-
-    Where robots park, they depend on when the last window of the goal opens, but not if no f is smaller: those of the
-    least f come first in any case, in the same order.
-    """
+    """Whether the query of the plan, asked again behind that rank, would give windows the same keys of `query/ties`."""
     if not state.parks:
         return True
-    opens = opens_at(state, int(state.robots.goal[state.records.robot[record]]), behind)
-    before = int(state.records.opens[record])
-    return opens == before or max(opens, before) <= state.records.least[record]
+    goal = int(state.robots.goal[state.records.robot[record]])
+    return has_order(state.records, record, opens_at(state, goal, behind))
 
 
 @compiled

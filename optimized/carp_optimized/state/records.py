@@ -206,21 +206,29 @@ def clash(state: State, one: int, other: int) -> bool:
 
 
 @compiled
-def delays_parking(state: State, record: int, other: int) -> bool:
-    """Whether, beside another plan, the query of a plan would give windows other keys of `query/ties`.
+def has_order(records: Records, record: int, opens: int) -> bool:
+    """Whether a query gives windows the keys that it gave them, now that the last one of its goal opens at that tick.
 
-    It does if the last window of its goal opens later then, at a tick that is above the least f.
+    It does too if no f is smaller: those of the least f come first in any case, in the same order.
     """
+    before = int(records.opens[record])
+    return opens == before or max(opens, before) <= records.least[record]
+
+
+@compiled
+def delays_parking(state: State, record: int, other: int) -> bool:
+    """Whether, beside another plan, the goal of a plan is free so late that its query would expand in another order."""
     if not state.parks:
         return False
     records = state.records
+    opens = int(records.opens[record])
     goal = int(state.robots.goal[records.robot[record]])
     first = int(records.visits_at[other])
     last = first + int(records.visits[other]) - 1
     for k in range(first, last + 1):
         resource = int(records.resource[k])
         leave = (int(records.enter[k + 1]) if k < last else int(records.leave[other])) + state.gap
-        if meet(state.graph, resource, goal) and leave > records.opens[record] and leave > records.least[record]:
+        if meet(state.graph, resource, goal) and not has_order(records, record, max(opens, leave)):
             return True
     return False
 
