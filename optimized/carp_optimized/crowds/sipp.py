@@ -89,7 +89,7 @@ def find_path(crowd: Crowd, stays: Stays, query: Query, robot: int, latest: int,
     reach(query, first, 0, NONE, bucket_of(query, 0, int(crowd.distance[robot][start])))
     found = NONE
     asks = query.counts[EXPANDED] + MANY
-    most = query.counts[EXPANDED] + query.counts[EFFORT]
+    most = query.counts[EXPANDED] + query.counts[EFFORT] + crowd.distance[robot][start]
     while True:
         label = next_label(query)
         if label == NONE:

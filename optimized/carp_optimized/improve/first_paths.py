@@ -40,7 +40,7 @@ HOPE, MANY = 8, 8
 SOME, PATIENCE = 64, 3
 """If a pass has missed at most one of `SOME` robots, so many times its time is for these."""
 EFFORT = 1000
-"""The gaps that a query may look at before the robot takes a way through others: a path far around arrives late.
+"""The gaps that a query may look at, beside its way, before the robot takes a way through others, not far around.
 
 In larger crowds it may look at all, as ways through others take longer there.
 """
@@ -107,7 +107,7 @@ def _best_in_order(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: 
         found = planned_in_order(crowd, timer, seed, until, GREEDY, effort, keys)
         longest = max(longest, timer.spent - began)
         best = min(best, found, key=_badness)
-        if by_steps and not best.size.all():
+        if by_steps and not best.size.all() and keys is not ways:
             break
         if not found.size.all():
             effort = UNTIL_FOUND
@@ -119,13 +119,13 @@ def _best_in_order(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: 
 
 
 def _orders(ways: Ints, seed: int) -> Iterator[Ints]:
-    """Keys for orders of robots: any order, the shortest and the longest way first, and the shortest with noise.
+    """Keys for orders of robots: the shortest way first, any order, the longest first, and the shortest with noise.
 
     The shortest way first is the best order where that leads to few delays. Else robots that park early hold up others.
     """
     stream = np.random.default_rng(seed)
-    yield stream.permutation(ways.size).astype(np.int32)
     yield ways
+    yield stream.permutation(ways.size).astype(np.int32)
     yield -ways
     for most in NOISE:
         yield ways + stream.integers(0, 1 + most * int(ways.mean()), ways.size, dtype=np.int32)

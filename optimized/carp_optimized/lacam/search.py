@@ -31,7 +31,7 @@ NODES, DEMANDS, DEPTH, TRIED = range(4)  # the counts
 ENDLESS = 1 << 40
 """More than any sum of distances."""
 ROOM = 256
-"""The configurations for which there is room at first."""
+"""The configurations, beyond the steps of the longest way, for which there is room at first."""
 
 
 class Nodes(NamedTuple):
@@ -95,8 +95,9 @@ class Search:
         """The crowd has been measured, and `can_begin`. The best of so many next configurations is taken."""
         self.outcome = RUNNING
         self.paths: Paths | None = None
-        step, nodes = no_step(crowd, seed, guides), _no_nodes(crowd, ROOM)
-        self._native = Native(Lacam(crowd, step, nodes, ways_of(crowd), crowd.start.copy(), samples))
+        least = ways_of(crowd)
+        step, nodes = no_step(crowd, seed, guides), _no_nodes(crowd, ROOM + int(least.max(initial=0)))
+        self._native = Native(Lacam(crowd, step, nodes, least, crowd.start.copy(), samples))
         _place_root(self._native.fields)
 
     @property
@@ -127,7 +128,7 @@ class Search:
 def _no_nodes(crowd: Crowd, room: int) -> Nodes:
     robots = crowd.start.size
     choices = int(np.diff(crowd.first).max(initial=0)) + 1
-    demands = room + 4 * choices
+    demands = (choices + 1) * room  # each successor tried adds at most so many
     return Nodes(
         places=np.empty((room, robots), np.int32),
         order=np.empty((room, robots), np.int32),
@@ -150,10 +151,12 @@ def _no_nodes(crowd: Crowd, room: int) -> Nodes:
 def _enlarged(crowd: Crowd, nodes: Nodes) -> Nodes:
     """The same configurations, with twice the room."""
     larger = _no_nodes(crowd, 2 * nodes.present.size)
+    used = int(nodes.counts[NODES])
     for name, before in nodes._asdict().items():
         if name != "bucket":
-            getattr(larger, name)[: len(before)] = before
-    for node in range(int(nodes.counts[NODES])):
+            kept = before[:used] if len(before) == nodes.present.size else before
+            getattr(larger, name)[: len(kept)] = kept
+    for node in range(used):
         at = int(larger.hash[node]) % larger.bucket.size
         larger.chain[node], larger.bucket[at] = larger.bucket[at], node
     return larger

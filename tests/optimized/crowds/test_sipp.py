@@ -45,6 +45,14 @@ def test_a_path_is_found_with_any_greed_or_with_none_and_comes_no_earlier_than_w
     assert later > 0
 
 
+def test_a_free_way_of_any_length_is_found_without_effort() -> None:
+    crowd = measured(on_grid(40, 1))
+    for greed in DEGREES_OF_GREED:
+        improving = Improving(crowd, no_paths(1, 200))
+        improving.plan_first(np.zeros(1, np.int32), never_ends, greed, 0)
+        assert arrivals(improving.rounds.paths)[0] == improving.rounds.least[0] > 0
+
+
 @pytest.mark.parametrize("after_goal", ["park", "vanish"])
 def test_without_greed_robots_arrive_as_early_as_by_the_reference(after_goal: AfterGoal) -> None:
     for seed in range(4):
