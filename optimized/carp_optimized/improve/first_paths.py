@@ -2,7 +2,8 @@
 
 With the shortest way first, robots that arrive early park early, and those that come later go around them. Where that
 makes jams, passes in other orders follow, else less greedy ones. A robot that does not find a path soon takes one on
-which it meets few others, and those are planned again. If that is not much better than LaCAM, LaCAM follows guides too.
+which it meets few others, and those are planned again. Where that does not end in time, or the crowd is large, passes
+are as greedy as can be, and then less and less. If that is not much better than LaCAM, LaCAM follows guides too.
 Where nothing ends, or LaCAM would take far too long, as many robots as possible are planned one after the other.
 """
 
@@ -14,7 +15,7 @@ import numpy as np
 from carp_optimized.crowds.crowd import Crowd, ways_of
 from carp_optimized.crowds.improving import Improving, arrivals, total_of
 from carp_optimized.crowds.rounds import GREEDY
-from carp_optimized.crowds.sipp import UNTIL_FOUND
+from carp_optimized.crowds.sipp import BUCKETS, UNTIL_FOUND, WHOLE
 from carp_optimized.crowds.stays import Paths, no_paths
 from carp_optimized.improve.clock import ALL, Clock
 from carp_optimized.jit.kinds import Ints
@@ -38,7 +39,7 @@ MISSES = 8
 HOPE, MANY = 8, 8
 """It gives up after one of `HOPE` parts of its time if it has missed more than one of `MANY` robots."""
 SOME, PATIENCE = 64, 3
-"""If a pass has missed at most one of `SOME` robots, so many times its time is for these."""
+"""If a pass has missed at most one of `SOME` robots, so many times its time is for these. Else one may give up."""
 EFFORT = 1000
 """The gaps that a query may look at, beside its way, before the robot takes a way through others, not far around.
 
@@ -46,12 +47,14 @@ In larger crowds it may look at all, as ways through others take longer there.
 """
 LESS = ((0, 5), (GREEDY // 4, 2))
 """Less greed than `GREEDY`, and how many times as long prioritized planning takes with it."""
+LADDER = (16 * GREEDY, 4 * GREEDY, GREEDY, GREEDY // 4, 0)
+"""Less and less greed: where a pass with `GREEDY` does not end in time, the greediest one may, in a seventh of it."""
 JAMMED = 4
 """Other orders are tried where the shortest way first makes paths longer by more than one of so many parts."""
 NOISE = (2, 64, 1, 4, 2, 64)
 """The most noise in the orders, in mean ways."""
-LARGE, CROWDED = 2000, 2
-"""With more robots there is no time for other orders, nor for any if LaCAM's paths are twice the shortest ways."""
+LARGE = 2000
+"""With more robots there is no time for other orders."""
 LONGEST = 700
 """The visits of a path by prioritized planning, or twice those of the longest way: one through others may be long."""
 
@@ -68,7 +71,11 @@ def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
         return [_as_many_in_order(crowd, timer, seed)]
     took = timer.spent - began
     samples = 1 + sum(EACH * count * took < timer.left() for count in range(2, SAMPLES + 1))
-    in_order = _best_in_order(crowd, timer, by_steps, seed)
+    in_order = no_paths(crowd.start.size, 1)
+    if crowd.start.size <= LARGE:
+        in_order = _best_in_order(crowd, timer, by_steps, seed)
+    if not in_order.size.all():
+        in_order = min(in_order, _best_of_ladder(crowd, timer, by_steps, seed), key=_badness)
     has_all = bool(in_order.size.all())
     if has_all and _is_better(crowd, in_order, by_steps):
         return [in_order, *by_steps]
@@ -94,17 +101,12 @@ def _as_many_in_order(crowd: Crowd, timer: Clock, seed: int) -> Paths:
 def _best_in_order(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int) -> Paths:
     """The best paths of greedy passes of prioritized planning, or of a less greedy one, as far as there is time."""
     ways = ways_of(crowd)
-    is_large = ways.size > LARGE
-    best = no_paths(ways.size, 1)
-    if is_large and any(total_of(each) >= CROWDED * int(ways.sum()) for each in by_steps):
-        return best
-    longest, effort = 0.0, UNTIL_FOUND if is_large else EFFORT
-    for keys in [ways] if is_large else _orders(ways, seed):
+    best, longest, effort = no_paths(ways.size, 1), 0.0, EFFORT
+    for keys in _orders(ways, seed):
         if 0 < longest >= timer.left(SEARCHING):
             break
         began = timer.spent
-        until = ALL if by_steps and is_large else SEARCHING
-        found = planned_in_order(crowd, timer, seed, until, GREEDY, effort, keys)
+        found = planned_in_order(crowd, timer, seed, SEARCHING, GREEDY, effort, keys)
         longest = max(longest, timer.spent - began)
         best = min(best, found, key=_badness)
         if by_steps and not best.size.all() and keys is not ways:
@@ -112,9 +114,26 @@ def _best_in_order(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: 
         if not found.size.all():
             effort = UNTIL_FOUND
         is_short_first = keys is ways and bool(best.size.all())
-        if is_short_first and (is_large or JAMMED * total_of(best) < (JAMMED + 1) * int(ways.sum())):
+        if is_short_first and JAMMED * total_of(best) < (JAMMED + 1) * int(ways.sum()):
             less = _less_greedy(crowd, timer, by_steps, seed, best, timer.spent - began)
             return min(less, best, key=_badness)
+    return best
+
+
+def _best_of_ladder(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int) -> Paths:
+    """The best paths of passes with less and less greed, as far as there is time. The first one is soon over."""
+    ways = ways_of(crowd)
+    best, took, until = no_paths(ways.size, 1), 0.0, ALL if by_steps else SEARCHING
+    for greed in LADDER:
+        if 2 * greed * int(ways.max()) > WHOLE * BUCKETS:
+            continue  # bounds would share the last bucket
+        if took > timer.left(until):
+            break
+        began = timer.spent
+        found = planned_in_order(crowd, timer, seed, until, greed, UNTIL_FOUND, ways, gives_up=True)
+        best, took, until = min(best, found, key=_badness), timer.spent - began, LAST
+        if not found.size.all():
+            break
     return best
 
 
@@ -171,11 +190,22 @@ def _searched(search: Search, steps: int, timer: Clock, until: int) -> list[Path
 
 
 def planned_in_order(
-    crowd: Crowd, timer: Clock, seed: int, until: int, greed: int, effort: int, keys: Ints, *, is_part: bool = False
+    crowd: Crowd,
+    timer: Clock,
+    seed: int,
+    until: int,
+    greed: int,
+    effort: int,
+    keys: Ints,
+    *,
+    is_part: bool = False,
+    gives_up: bool = False,
 ) -> Paths:
     """The paths of a pass of prioritized planning, and then of the robots that it missed, as long as they get fewer.
 
-    If paths of a part of the robots are of use, time is left for the visits of those alone.
+    If paths of a part of the robots are of use, time is left for the visits of those alone. A pass that `gives_up` does
+    so soon if it misses some robots, or would not end in time if the work grows with the square of the robots planned:
+    those with longer ways are planned later, and among more others.
     """
     robots = crowd.start.size
     room = max(LONGEST, 2 * int(ways_of(crowd).max()))
@@ -187,11 +217,22 @@ def planned_in_order(
             timer.reserve(int(improving.rounds.paths.size.sum()))
         return timer.goes_on(until) and (is_likely or HOPE * (timer.spent - begun) < time)
 
+    def misses_few() -> bool:
+        if not gives_up:
+            return goes_on(is_likely=MANY * improving.missed <= robots)
+        took = timer.spent - begun
+        done = int(np.count_nonzero(improving.rounds.paths.size)) + improving.missed
+        is_likely = took * robots**2 < (took + timer.left(until)) * done**2
+        return SOME * improving.missed <= robots and goes_on(is_likely=is_likely)
+
     order = np.argsort(keys, kind="stable").astype(np.int32)
-    improving.plan_first(order, lambda: goes_on(is_likely=MANY * improving.missed <= robots), greed, effort)
+    improving.plan_first(order, misses_few, greed, effort)
     missing = int(np.count_nonzero(improving.rounds.paths.size == 0))
+    misses_some = SOME * missing > robots
+    if gives_up and misses_some:
+        return improving.rounds.paths
     last = improving.missed + MISSES * robots
-    patient = begun + PATIENCE * (timer.spent - begun) * (SOME * missing <= robots)
+    patient = timer.spent if misses_some else begun + PATIENCE * (timer.spent - begun)
     half, halved, halving = missing, begun, 0.0
 
     def gets_fewer(waiting: int) -> bool:

@@ -59,9 +59,11 @@ def test_rounds_improve_a_crowd_and_its_best_total_never_rises(after_goal: After
     assert 2 * seen[-1] < total_cost(instance, first) + seen[0]
 
 
-@pytest.mark.parametrize("jammed", [0, 10**6])
-def test_plans_are_lawful_with_less_greed_and_with_other_orders(jammed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(first_paths, "JAMMED", jammed)
+@pytest.mark.parametrize(("name", "value"), [("JAMMED", 0), ("JAMMED", 10**6), ("LARGE", 0)])
+def test_plans_are_lawful_with_less_greed_and_with_other_orders(
+    name: str, value: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(first_paths, name, value)
     instance = on_grid(12, 60)
     found = plan_crowd(instance, iterations=50, seconds=None)
     assert judge(instance, found).valid
