@@ -23,7 +23,7 @@ from carp_optimized.jit.compiling import compiled
 from carp_optimized.jit.kinds import Ints, IntTable, Longs
 from carp_optimized.state.arrays import NEVER, NONE
 
-BUCKETS = 1 << 14
+BUCKETS = 1 << 15
 """Paths that arrive later than the first bound by more ticks than this are not found."""
 PLACES = 7
 """Places that differ in these bits have their edges turned by other bits of the turn."""

@@ -49,6 +49,8 @@ LESS = ((0, 5), (GREEDY // 4, 2))
 """Less greed than `GREEDY`, and how many times as long prioritized planning takes with it."""
 LADDER = (16 * GREEDY, 4 * GREEDY, GREEDY, GREEDY // 4, 0)
 """Less and less greed: where a pass with `GREEDY` does not end in time, the greediest one may, in a seventh of it."""
+LATE = 1 << 12
+"""The ticks of delay for which there must be buckets beside the greed: without, all bounds share the last bucket."""
 JAMMED = 4
 """Other orders are tried where the shortest way first makes paths longer by more than one of so many parts."""
 NOISE = (2, 64, 1, 4, 2, 64)
@@ -125,8 +127,8 @@ def _best_of_ladder(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed:
     ways = ways_of(crowd)
     best, took, until = no_paths(ways.size, 1), 0.0, ALL if by_steps else SEARCHING
     for greed in LADDER:
-        if 2 * greed * int(ways.max()) > WHOLE * BUCKETS:
-            continue  # bounds would share the last bucket
+        if greed * int(ways.max()) // WHOLE > BUCKETS - LATE:
+            continue
         if took > timer.left(until):
             break
         began = timer.spent
