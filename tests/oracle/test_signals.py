@@ -40,8 +40,8 @@ TWO_CORES = sys.platform == "linux" and len(os.sched_getaffinity(0)) > 1
 @pytest.fixture(scope="module")
 def town(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("town")
-    for name, robots in (("town", 100), ("large", 300)):
-        instance = grid_instance(Grid(), Fleet(robots=robots))
+    for name, side, robots in (("town", 20, 100), ("large", 60, 300)):
+        instance = grid_instance(Grid(width=side, height=side), Fleet(robots=robots))
         (folder / f"{name}.json").write_bytes(write_instance(instance))
         (folder / f"{'' if name == 'town' else 'large-'}plans.json").write_bytes(write_solution(plan(instance, Carp())))
     return folder
@@ -112,7 +112,7 @@ def test_a_signal_ends_every_long_command(command: str, number: signal.Signals, 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_a_search_and_the_one_beside_it(number: signal.Signals, town: Path) -> None:
     (town / "hard.json").write_bytes(write_instance(grid_instance(Grid(map=8), Fleet(robots=80))))
-    interrupted("optimum hard.json --limit 600 -o out.json", number, town, 0.3, processes=3)
+    interrupted("optimum hard.json --limit 600 --processes 2 -o out.json", number, town, 0.3, processes=3)
 
 
 EARLY = """
