@@ -133,7 +133,7 @@ def _best_of_ladder(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed:
             break
         began = timer.spent
         found = planned_in_order(crowd, timer, seed, until, greed, UNTIL_FOUND, ways, gives_up=True)
-        best, took, until = min(best, found, key=_badness), timer.spent - began, LAST
+        best, took, until = min(best, found, key=_badness), timer.spent - began, LATEST
         if not found.size.all():
             break
     return best
