@@ -48,7 +48,7 @@ In larger crowds it may look at all, as ways through others take longer there.
 LESS = ((0, 5), (GREEDY // 4, 2))
 """Less greed than `GREEDY`, and how many times as long prioritized planning takes with it."""
 LADDER = (16 * GREEDY, 4 * GREEDY, GREEDY, GREEDY // 4, 0)
-"""Less and less greed: where a pass with `GREEDY` does not end in time, the greediest one may, in a seventh of it."""
+"""Less and less greed: where a pass with `GREEDY` does not end in time, the greediest may, in half to a sixth of it."""
 LATE = 1 << 12
 """The ticks of delay for which there must be buckets beside the greed: without, all bounds share the last bucket."""
 JAMMED = 4
@@ -77,7 +77,7 @@ def first_paths(crowd: Crowd, timer: Clock, seed: int) -> list[Paths]:
     if crowd.start.size <= LARGE:
         in_order = _best_in_order(crowd, timer, by_steps, seed)
     if not in_order.size.all():
-        in_order = min(in_order, _best_of_ladder(crowd, timer, by_steps, seed), key=_badness)
+        in_order = min(in_order, best_of_ladder(crowd, timer, by_steps, seed), key=_badness)
     has_all = bool(in_order.size.all())
     if has_all and _is_better(crowd, in_order, by_steps):
         return [in_order, *by_steps]
@@ -122,7 +122,7 @@ def _best_in_order(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: 
     return best
 
 
-def _best_of_ladder(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int) -> Paths:
+def best_of_ladder(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int) -> Paths:
     """The best paths of passes with less and less greed, as far as there is time. The first one is soon over."""
     ways = ways_of(crowd)
     best, took, until = no_paths(ways.size, 1), 0.0, ALL if by_steps else SEARCHING

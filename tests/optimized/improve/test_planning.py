@@ -13,6 +13,7 @@ from tests.optimized.crowds.measuring import measured, on_grid
 from carp_optimized.crowds.crowd import is_stepwise, ways_of
 from carp_optimized.crowds.improving import arrivals
 from carp_optimized.crowds.rounds import GREEDY
+from carp_optimized.crowds.sipp import UNTIL_FOUND
 from carp_optimized.improve import first_paths, planning
 from carp_optimized.improve.clock import ALL, Clock
 from carp_optimized.improve.cycles import FEW, SPARSE, improved
@@ -81,6 +82,16 @@ def test_rounds_from_two_starts_end_no_worse_than_either_in_whatever_order_they_
     for ordered in (starts, starts[::-1]):
         ended = improved(found, ordered, iterations, always, 0, lambda *_: None)
         assert arrivals(ended).sum() <= min(arrivals(each).sum() for each in starts)
+
+
+def test_less_and_less_greed_ends_with_better_plans_than_the_greediest_pass() -> None:
+    found = measured(on_grid(23, 60))
+    always = Clock(None, process_time, 0.0)
+    greediest, ways = max(first_paths.LADDER), ways_of(found)
+    first = first_paths.planned_in_order(found, always, 0, ALL, greediest, UNTIL_FOUND, ways)
+    best = first_paths.best_of_ladder(found, always, [], 0)
+    assert best.size.all()
+    assert arrivals(best).sum() < arrivals(first).sum()
 
 
 def test_a_way_through_others_has_room_for_more_visits_than_the_longest_way(monkeypatch: pytest.MonkeyPatch) -> None:
