@@ -11,12 +11,26 @@ from carp_optimized.jit.compiling import RecordsExhausted, RoomExhausted, TicksE
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
 from carp_optimized.neighbourhood.adding import add_robot
-from carp_optimized.neighbourhood.polishing import FORGOTTEN, NOW, QUEUED, TURN, play_rounds
+from carp_optimized.neighbourhood.polishing import play_rounds
 from carp_optimized.neighbourhood.reuse import Queries, Reuse
 from carp_optimized.queries.search import ALONE
 from carp_optimized.recording import enlarged, read_plan, write_plan
 from carp_optimized.state import encoding, limits, room
-from carp_optimized.state.arrays import LARGEST, NONE, UNASKED, UNKNOWN, Adding, Options, Polish, Records, State
+from carp_optimized.state.arrays import (
+    FORGOTTEN,
+    LARGEST,
+    NONE,
+    NOW,
+    QUEUED,
+    TURN,
+    UNASKED,
+    UNKNOWN,
+    Adding,
+    Options,
+    Polish,
+    Records,
+    State,
+)
 from carp_optimized.state.records import keep_records
 from carp_spec import FixedPaths, Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Shuffled, Solution
 from carp_spec.documents.solutions import PlanColumns

@@ -6,10 +6,11 @@ from carp_optimized.jit.references import Native
 from carp_optimized.queries.guides import guide_of, guide_slot
 from carp_optimized.queries.over_stops import shortest_of
 from carp_optimized.queries.search import ALONE, NOTED, cost_alone, find_any_plan, find_plan_by
-from carp_optimized.queries.windows import reserve, still_found, withdraw
 from carp_optimized.state.arrays import NEVER, NONE, TOO_FAR, UNASKED, UNCHANGED, UNKNOWN, State
 from carp_optimized.state.natives import state_at
 from carp_optimized.state.records import close_record, cost_of, start_record
+from carp_optimized.windows.fitting import still_found
+from carp_optimized.windows.reserving import reserve, withdraw
 
 
 @entry

@@ -11,7 +11,7 @@ from carp_optimized import plan, polish
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.annealing import anneal
 from carp_optimized.improve.repair import repair
-from carp_optimized.neighbourhood.polishing import CHANCE
+from carp_optimized.state.arrays import CHANCE
 from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, judge, total_cost
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances

@@ -27,9 +27,8 @@ from carp_optimized.crowds.state import (
     take_out_again,
 )
 from carp_optimized.crowds.stays import arrival, drop_stay, end_of, later_than, met_at, put_stay
+from carp_optimized.draws import choice, draw_raise
 from carp_optimized.jit.compiling import compiled
-from carp_optimized.neighbourhood.orders import choice
-from carp_optimized.neighbourhood.polishing import draw_raise
 from carp_optimized.state.arrays import NONE
 
 STEPS = 32

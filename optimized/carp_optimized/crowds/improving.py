@@ -22,9 +22,9 @@ from carp_optimized.crowds.state import (
     Rounds,
 )
 from carp_optimized.crowds.stays import Paths, no_paths, no_stays, with_more_room
+from carp_optimized.draws import SURE
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
-from carp_optimized.neighbourhood.polishing import SURE
 
 WORK = 1 << 15
 """The labels that one compiled call expands before it looks whether to go on: some milliseconds."""

@@ -9,10 +9,10 @@ from carp_optimized.crowds.sipp import find_path
 from carp_optimized.crowds.soft_sipp import find_soft_path
 from carp_optimized.crowds.state import MISSED, Rounds, expanded, rounds_at
 from carp_optimized.crowds.stays import drop, met_at, put
+from carp_optimized.draws import choice
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
-from carp_optimized.neighbourhood.orders import choice
 from carp_optimized.state.arrays import NEVER, NONE
 
 

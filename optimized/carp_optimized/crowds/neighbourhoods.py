@@ -2,9 +2,9 @@
 
 from carp_optimized.crowds.state import SIZE, Rounds, add_member, delayed
 from carp_optimized.crowds.stays import Paths, arrival, later_than, robot_at
+from carp_optimized.draws import choice
 from carp_optimized.jit.compiling import compiled
-from carp_optimized.neighbourhood.orders import choice
-from carp_optimized.neighbourhood.polishing import NOISE, put_in_turn
+from carp_optimized.neighbourhood.turns import NOISE, put_in_turn
 from carp_optimized.state.arrays import NEVER, NONE
 
 WALKS = 10  # of the delayed robot, until enough others are met

@@ -33,11 +33,10 @@ from carp_optimized.crowds.state import (
     take_out,
 )
 from carp_optimized.crowds.stays import put
+from carp_optimized.draws import choice, draw_raise, shuffle
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
-from carp_optimized.neighbourhood.orders import choice, shuffle
-from carp_optimized.neighbourhood.polishing import draw_raise
 from carp_optimized.state.arrays import NEVER, NONE
 
 IN_WAY, CROSSING, TURNS, DRAWN, EJECTING = range(5)  # the kinds

@@ -9,11 +9,10 @@ from carp_optimized.crowds.crowd import Crowd
 from carp_optimized.crowds.sipp import EXPANDED, Query
 from carp_optimized.crowds.soft_sipp import SoftQuery
 from carp_optimized.crowds.stays import Paths, Stays, arrival, copy_path, drop, put
+from carp_optimized.draws import SURE, choice
 from carp_optimized.jit.compiling import compiled
 from carp_optimized.jit.kinds import Ints, Longs, Numbers
 from carp_optimized.jit.references import dereference
-from carp_optimized.neighbourhood.orders import choice
-from carp_optimized.neighbourhood.polishing import SURE
 
 TOTAL, BEST, CHANCE, DIRTY, MARK, SIZE, WORK, ROUNDS, MISSED, TURNING, BEFORE, AFTER, REST = range(13)  # the counts
 COUNTS = REST + 1

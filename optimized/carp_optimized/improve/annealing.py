@@ -19,9 +19,9 @@ from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.cycles import ENOUGH, HEAT, PARTS, REHEAT, chance
 from carp_optimized.improve.planning import improve_crowd
 from carp_optimized.improve.repair import repair
-from carp_optimized.neighbourhood.polishing import CHANCE
 from carp_optimized.planners import rounds_between_looks
 from carp_optimized.settling import settle
+from carp_optimized.state.arrays import CHANCE
 from carp_spec import Instance, Refusal, Solution
 from carp_spec.inputs.options import require_polish_options
 from carp_spec.requests import require_tick, sound_solution

@@ -18,8 +18,8 @@ from carp_optimized.crowds.crowd import Crowd, ways_of
 from carp_optimized.crowds.improving import Improving, arrivals, total_of
 from carp_optimized.crowds.rounds import GREEDY
 from carp_optimized.crowds.stays import Paths
+from carp_optimized.draws import SURE
 from carp_optimized.improve.clock import Clock
-from carp_optimized.neighbourhood.polishing import SURE
 
 Advance = Callable[[int, int, int], None]
 

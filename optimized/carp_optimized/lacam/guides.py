@@ -17,10 +17,10 @@ from typing import NamedTuple
 import numpy as np
 
 from carp_optimized.crowds.crowd import FAR, Crowd, ways_of
+from carp_optimized.draws import GOLDEN
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints, Longs
 from carp_optimized.jit.references import Native, dereference
-from carp_optimized.neighbourhood.orders import GOLDEN
 from carp_optimized.queries.heap import push, replace_root
 from carp_optimized.state.arrays import NONE
 

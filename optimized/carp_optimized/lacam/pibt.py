@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from carp_optimized.crowds.crowd import GONE, Crowd
+from carp_optimized.draws import next_number, swap
 from carp_optimized.jit.compiling import compiled
 from carp_optimized.jit.kinds import Ints, IntTable, Longs, Numbers
 from carp_optimized.lacam.guides import Guides, next_on_guide
-from carp_optimized.neighbourhood.orders import next_number, swap
 from carp_optimized.state.arrays import NONE
 
 NOWHERE = -2

@@ -15,12 +15,12 @@ from carp_optimized.crowds.crowd import GONE, Crowd, can_begin, crowd_of, is_ste
 from carp_optimized.crowds.distances import measure
 from carp_optimized.crowds.improving import LONGER
 from carp_optimized.crowds.stays import Paths, no_paths, solution_along
+from carp_optimized.draws import FIRST_MIX, GOLDEN, SECOND_MIX
 from carp_optimized.jit.compiling import compiled, entry
 from carp_optimized.jit.kinds import Ints, IntTable, Longs, Numbers
 from carp_optimized.jit.references import Native, dereference
 from carp_optimized.lacam.guides import Guides
 from carp_optimized.lacam.pibt import NOWHERE, Step, begin, choose, end, is_open, no_step, rank_choices, take
-from carp_optimized.neighbourhood.orders import FIRST_MIX, GOLDEN, SECOND_MIX
 from carp_optimized.state.arrays import NONE
 from carp_spec import Instance, Plan
 

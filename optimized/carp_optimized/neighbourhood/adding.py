@@ -16,15 +16,6 @@ from carp_optimized.neighbourhood.replanning import (
 )
 from carp_optimized.queries.over_stops import shortest_of
 from carp_optimized.queries.search import find_plan_alone, find_plan_by
-from carp_optimized.queries.windows import (
-    give_rank,
-    has_same_order,
-    plan_fits,
-    reserve_but,
-    still_found,
-    withdraw,
-    withdraw_but,
-)
 from carp_optimized.state.arrays import (
     LARGEST,
     NEVER,
@@ -40,6 +31,8 @@ from carp_optimized.state.arrays import (
 )
 from carp_optimized.state.natives import adding_at
 from carp_optimized.state.records import cost_of, same_plan
+from carp_optimized.windows.fitting import has_same_order, plan_fits, still_found
+from carp_optimized.windows.reserving import give_rank, reserve_but, withdraw, withdraw_but
 
 
 @entry

@@ -23,7 +23,6 @@ from carp_optimized.neighbourhood.answers import known_answer, learn, least_of, 
 from carp_optimized.neighbourhood.orders import next_permutation, next_row, queries_after, queries_of_rows, take_row
 from carp_optimized.queries.relevant_plans import reasons
 from carp_optimized.queries.search import find_plan_by
-from carp_optimized.queries.windows import reserve, withdraw
 from carp_optimized.state.arrays import (
     BOUND,
     LARGEST,
@@ -40,6 +39,7 @@ from carp_optimized.state.arrays import (
     Work,
 )
 from carp_optimized.state.records import cost_of
+from carp_optimized.windows.reserving import reserve, withdraw
 
 
 @compiled

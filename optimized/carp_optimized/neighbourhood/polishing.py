@@ -5,30 +5,41 @@ is cut as soon as it leaves more robots unplanned than before, or as many and it
 robots still to come is above that of the plans before: it could not be kept.
 
 `carp_optimized.improve.annealing` lets rounds raise the total. In a polish by the rules none may: then nothing is
-drawn for it. With raises, every second round takes turns: it takes out robots that cross one resource, up to 16 of
-them, and plans them in the order in which they cross it, changed a little by draws. So on a tree one direction can go
-before the other. Of 16 robots in a drawn order hardly any could be planned as well as before.
+drawn for it. With raises, every second round takes turns (`carp_optimized.neighbourhood.turns`).
 """
 
+from carp_optimized.draws import choice, draw_raise, shuffle, swap
 from carp_optimized.jit.compiling import compiled, entry
-from carp_optimized.jit.kinds import Ints, Longs, Numbers
 from carp_optimized.jit.references import Native
-from carp_optimized.neighbourhood.distances import Mean, distance_below, is_apart, is_less
-from carp_optimized.neighbourhood.orders import choice, shuffle, swap
+from carp_optimized.neighbourhood.candidates import (
+    mark_spans,
+    meets_span,
+    note_robots_in_spans,
+    rank_crossing,
+    rank_near,
+)
+from carp_optimized.neighbourhood.turns import draw_turns
 from carp_optimized.queries.search import find_plan_only
-from carp_optimized.queries.windows import reserve, withdraw
-from carp_optimized.state.arrays import BLOCK, MOST_MEMBERS, MOST_TURNS, NEVER, NONE, UNASKED, Polish, State
+from carp_optimized.state.arrays import (
+    CHANCE,
+    MOST_MEMBERS,
+    MOST_TURNS,
+    NEVER,
+    NONE,
+    NOW,
+    QUEUED,
+    TURN,
+    UNASKED,
+    Polish,
+    State,
+)
 from carp_optimized.state.natives import polish_at, state_at
 from carp_optimized.state.records import cost_of, first_visits
+from carp_optimized.windows.reserving import reserve, withdraw
 
-QUEUED, TURN, MARKS, CHANCE, MARKED, NOW, FORGOTTEN = range(7)  # the counts
-SURE = 1 << 16  # a chance is in parts of this
 REPAIR, DELAYED, CONTESTED, NEAR = range(4)
 LEAST_MEMBERS = 4
 SIZES = MOST_MEMBERS - LEAST_MEMBERS + 1
-PIVOTS_WAY, OTHER_WAYS, DRAWN = range(3)  # the robots that go first, of four choices; else none does
-NOISE = 16  # ticks by which robots may change places
-AFTER = 1 << 40  # more than any tick
 
 
 @entry
@@ -141,119 +152,10 @@ def plan_alone(polish: Polish, empty: State, robot: int) -> int:
 
 
 @compiled
-def mark_spans(state: State, polish: Polish, record: int) -> None:
-    """Mark the resources that the plan visits, and those that a move leads to from there, with their spans."""
-    polish.counts[MARKS] += 1
-    polish.counts[MARKED] = 0
-    records = state.records
-    first = int(records.visits_at[record])
-    last = first + int(records.visits[record]) - 1
-    for k in range(first, last + 1):
-        resource = int(records.resource[k])
-        enter = int(records.enter[k])
-        leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
-        mark_span(polish, resource, enter, leave)
-        for edge in range(int(state.graph.first[resource]), int(state.graph.first[resource + 1])):
-            mark_span(polish, int(state.graph.target[edge]), enter, leave)
-
-
-@compiled
-def mark_span(polish: Polish, resource: int, enter: int, leave: int) -> None:
-    """Make the span of the resource include the stay."""
-    if polish.mark[resource] == polish.counts[MARKS]:
-        polish.first[resource] = min(int(polish.first[resource]), enter)
-        polish.last[resource] = max(int(polish.last[resource]), leave)
-    else:
-        polish.mark[resource] = polish.counts[MARKS]
-        polish.first[resource] = enter
-        polish.last[resource] = leave
-        polish.marked[polish.counts[MARKED]] = resource
-        polish.counts[MARKED] += 1
-
-
-@compiled
-def note_robots_in_spans(state: State, polish: Polish) -> bool:
-    """Note as 1 in `others` the robots with a stay that meets a span, 0 for the others; whether windows tell robots.
-
-    Those of a capacity above 1 do not. The windows hold all plans, and a stay is between two of them.
-    """
-    windows = state.windows
-    if state.stays.start.size > BLOCK:
-        return False
-    for robot in range(polish.others.size):
-        polish.others[robot] = 0
-    for k in range(int(polish.counts[MARKED])):
-        resource = int(polish.marked[k])
-        slot = int(windows.offset[resource])
-        last = slot + int(windows.size[resource]) - 1
-        # a stay begins as the window before it ends, and ends as the window behind it begins, but for the gaps
-        while slot < last and int(windows.start[slot + 1]) - state.gap < polish.first[resource]:
-            slot += 1
-        while slot < last and int(windows.end[slot]) + state.gap <= polish.last[resource]:
-            polish.others[windows.robot[slot]] = 1
-            slot += 1
-    return True
-
-
-@compiled
-def meets_span(state: State, polish: Polish, record: int) -> bool:
-    """Whether a stay of the plan meets the span of its resource."""
-    records = state.records
-    first = int(records.visits_at[record])
-    last = first + int(records.visits[record]) - 1
-    for k in range(first, last + 1):
-        resource = int(records.resource[k])
-        if polish.mark[resource] == polish.counts[MARKS]:
-            leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
-            if polish.first[resource] <= leave and records.enter[k] <= polish.last[resource]:
-                return True
-    return False
-
-
-@compiled
 def choose_visit(state: State, polish: Polish, pivot: int) -> int:
     """Choose a visit of the pivot's plan (`polish/contested`)."""
     own = int(polish.plans[pivot])
     return int(state.records.visits_at[own]) + choice(polish.stream, int(state.records.visits[own]))
-
-
-@compiled
-def crossing(state: State, record: int, chosen: int) -> int:
-    """The plan's visit to the resource of the chosen visit that begins the fewest ticks apart from it; else `NONE`."""
-    records = state.records
-    nearest = NONE
-    least = NEVER
-    first = int(records.visits_at[record])
-    for visit in range(first, first + int(records.visits[record])):
-        apart = abs(int(records.enter[visit]) - int(records.enter[chosen]))
-        if records.resource[visit] == records.resource[chosen] and apart < least:
-            nearest = visit
-            least = apart
-    return nearest
-
-
-@compiled
-def rank_crossing(state: State, polish: Polish, pivot: int, chosen: int, most: int) -> int:
-    """Rank the robots that visit the resource of the chosen visit (`polish/contested`); how many there are.
-
-    With the pivot they are at most as many as given.
-    """
-    records = state.records
-    resource = int(records.resource[chosen])
-    polish.counts[MARKS] += 1
-    polish.counts[MARKED] = 0
-    mark_span(polish, resource, 0, NEVER)
-    is_told = note_robots_in_spans(state, polish)
-    count = 0
-    for robot in range(polish.plans.size):
-        record = int(polish.plans[robot])
-        if robot == pivot or record == NONE or (is_told and polish.others[robot] == 0):
-            continue
-        visit = crossing(state, record, chosen)
-        if visit != NONE:
-            apart = abs(int(records.enter[visit]) - int(records.enter[chosen]))
-            count = insert(polish, count, robot, Mean(apart, 0, 1), most)
-    return count
 
 
 @compiled
@@ -267,98 +169,6 @@ def take_turns(state: State, polish: Polish, pivot: int) -> None:
         polish.members[k] = polish.candidates[k - 1]
     draw_turns(state, polish, size, chosen)
     replan_members(state, polish, size)
-
-
-@compiled
-def draw_turns(state: State, polish: Polish, size: int, chosen: int) -> None:
-    """Order the members by their crossings: those of one direction first, or a drawn half, or with drawn delays."""
-    own = way_after(state, int(polish.plans[polish.members[0]]), chosen)
-    leaders = choice(polish.stream, 4)
-    noise = 1 + choice(polish.stream, 2) * (NOISE - 1)
-    for k in range(size):
-        record = int(polish.plans[polish.members[k]])
-        visit = crossing(state, record, chosen)
-        enter = int(state.records.enter[visit])
-        is_own = way_after(state, record, visit) == own
-        put_in_turn(polish.stream, polish.members, polish.whole, k, enter, is_own, leaders, noise)
-
-
-@compiled
-def put_in_turn(
-    stream: Numbers, members: Ints, keys: Longs, k: int, tick: int, is_own: bool, leaders: int, noise: int
-) -> None:
-    """Put member k, which crosses at the tick, among those before it: those that lead first, each with a drawn delay.
-
-    Its way is the pivot's own, or not.
-    """
-    robot = int(members[k])
-    key = tick + choice(stream, noise)
-    if (
-        (leaders == PIVOTS_WAY and not is_own)
-        or (leaders == OTHER_WAYS and is_own)
-        or (leaders == DRAWN and choice(stream, 2) == 0)
-    ):
-        key += AFTER
-    place = k
-    while place > 0 and keys[place - 1] > key:
-        keys[place] = keys[place - 1]
-        members[place] = members[place - 1]
-        place -= 1
-    keys[place] = key
-    members[place] = robot
-
-
-@compiled
-def way_after(state: State, record: int, visit: int) -> int:
-    """The resource that the plan goes to after the visit; `NONE` after its last."""
-    records = state.records
-    last = int(records.visits_at[record]) + int(records.visits[record]) - 1
-    return int(records.resource[visit + 1]) if visit < last else NONE
-
-
-@compiled
-def rank_near(state: State, polish: Polish, pivot: int) -> int:
-    """Rank the robots by their distance from the pivot (`polish/near`); how many there are.
-
-    Only those that can become members are ranked.
-    """
-    count = 0
-    for robot in range(polish.plans.size):
-        record = int(polish.plans[robot])
-        if robot == pivot or record == NONE:
-            continue
-        farthest = Mean(1 << (31 + state.split), 0, 1)  # more than any term
-        if count == MOST_MEMBERS - 1:
-            farthest = Mean(int(polish.whole[count - 1]), int(polish.rest[count - 1]), int(polish.ticks[count - 1]))
-        if is_apart(state, record, int(polish.plans[pivot]), farthest.whole):
-            continue
-        mean = distance_below(state, record, int(polish.plans[pivot]), farthest)
-        if is_less(mean, farthest):
-            count = insert(polish, count, robot, mean, MOST_MEMBERS)
-    return count
-
-
-@compiled
-def insert(polish: Polish, count: int, robot: int, rank: Mean, most: int) -> int:
-    """Insert a candidate behind those of its rank or less; with the pivot, as many as given are kept."""
-    place = count
-    while place > 0:
-        before = Mean(int(polish.whole[place - 1]), int(polish.rest[place - 1]), int(polish.ticks[place - 1]))
-        if not is_less(rank, before):
-            break
-        place -= 1
-    count = min(count + 1, most - 1)
-    for k in range(count - 1, place, -1):
-        polish.candidates[k] = polish.candidates[k - 1]
-        polish.whole[k] = polish.whole[k - 1]
-        polish.rest[k] = polish.rest[k - 1]
-        polish.ticks[k] = polish.ticks[k - 1]
-    if place < count:
-        polish.candidates[place] = robot
-        polish.whole[place] = rank.whole
-        polish.rest[place] = rank.rest
-        polish.ticks[place] = rank.ticks
-    return count
 
 
 @compiled
@@ -424,15 +234,6 @@ def replan_members(state: State, polish: Polish, size: int) -> None:
     records.used[0] = used
     records.used[1] = used_visits
     records.used[2] = used_expansions
-
-
-@compiled
-def draw_raise(stream: Numbers, chance: int) -> int:
-    """Draw by how much a round may raise the total: each further tick by the chance, which is below `SURE`."""
-    ticks = 0
-    while chance > 0 and choice(stream, SURE) < chance:
-        ticks += 1
-    return ticks
 
 
 @compiled

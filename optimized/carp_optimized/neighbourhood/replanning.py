@@ -21,22 +21,11 @@ or at one up to its least f, and the windows it would see differ from those it s
 A plan made earlier and now under way is the same query with fewer ways to begin, so the second case holds for it.
 """
 
+from carp_optimized.jit.blocks import BLOCK
 from carp_optimized.jit.compiling import compiled, inlined
 from carp_optimized.queries.guides import guide_slot, key_of, toll_of
 from carp_optimized.queries.search import find_plan_by
-from carp_optimized.queries.windows import (
-    end_of_run,
-    evict,
-    has_same_order,
-    last_by,
-    plan_fits,
-    reserve,
-    reserve_but,
-    withdraw,
-    withdraw_but,
-)
 from carp_optimized.state.arrays import (
-    BLOCK,
     GROUPED,
     KEPT,
     NEVER,
@@ -50,6 +39,9 @@ from carp_optimized.state.arrays import (
     Work,
 )
 from carp_optimized.state.records import same_plan
+from carp_optimized.windows.fitting import end_of_run, has_same_order, plan_fits
+from carp_optimized.windows.reserving import evict, reserve, reserve_but, withdraw, withdraw_but
+from carp_optimized.windows.rows import last_by
 
 
 @compiled

@@ -9,9 +9,10 @@ from carp_optimized.jit.compiling import RecordsExhausted, RoomExhausted, TicksE
 from carp_optimized.jit.kinds import Ints, Longs
 from carp_optimized.queries.guides import guide_of, guide_slot
 from carp_optimized.queries.ways_back import CUT_OFF, FEWEST, look_back
-from carp_optimized.queries.windows import STANDING, end_of_run, is_exchange, opens_at, skip_below, stand, start_of_run
 from carp_optimized.state.arrays import FIRST, LARGEST, NEVER, NONE, TOO_FAR, UNKNOWN, UNREACHABLE, State, Stops
 from carp_optimized.state.records import close_record, note_opening, start_record
+from carp_optimized.windows.fitting import STANDING, end_of_run, is_exchange, opens_at, stand, start_of_run
+from carp_optimized.windows.rows import skip_below
 
 
 @compiled

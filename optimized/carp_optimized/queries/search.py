@@ -1,25 +1,13 @@
 """The CARP query, a relative of SIPP: A* over free windows in the order of `query/ties`."""
 
+from carp_optimized.jit.blocks import BLOCK, below, lowest, width
 from carp_optimized.jit.compiling import RoomExhausted, TicksExhausted, compiled, inlined
-from carp_optimized.queries.blocks import below, lowest, width
 from carp_optimized.queries.guides import guide_of, guide_slot, key_of, reach_all, toll_of
 from carp_optimized.queries.heap import push, replace_root
 from carp_optimized.queries.over_stops import find_over_stops, has_goal_alone_left, has_stops
 from carp_optimized.queries.ways_back import CUT_OFF, FEWEST, look_back
-from carp_optimized.queries.windows import (
-    STANDING,
-    end_of_run,
-    fits,
-    is_exchange,
-    opens_at,
-    plan_fits,
-    skip_below,
-    stand,
-    start_of_run,
-)
 from carp_optimized.state.arrays import (
     ASKED,
-    BLOCK,
     FURTHER,
     GROUPED,
     LARGEST,
@@ -32,6 +20,17 @@ from carp_optimized.state.arrays import (
     State,
 )
 from carp_optimized.state.records import cost_of, start_record, write_record
+from carp_optimized.windows.fitting import (
+    STANDING,
+    end_of_run,
+    fits,
+    is_exchange,
+    opens_at,
+    plan_fits,
+    stand,
+    start_of_run,
+)
+from carp_optimized.windows.rows import skip_below
 
 EVERY = (1 << BLOCK) - 1
 NO_KEY = (NEVER << 32) + LOW  # above those of all windows

@@ -18,8 +18,8 @@ The look ends at a window that is entered by then, for the goal is likely to be 
 from carp_optimized.jit.compiling import compiled
 from carp_optimized.queries.guides import toll_of
 from carp_optimized.queries.heap import push, replace_root
-from carp_optimized.queries.windows import skip_below
 from carp_optimized.state.arrays import NEVER, NONE, State
+from carp_optimized.windows.rows import skip_below
 
 CUT_OFF = 0
 FEWEST = 64  # windows that any look may take

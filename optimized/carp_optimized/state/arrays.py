@@ -18,7 +18,6 @@ GROUPED = 0  # the capacity of a resource of groups: those of its constraints ar
 UNKNOWN = -1  # the number of expansions of a plan that no query of the fleet has made
 
 SEVERAL = -2  # the source of stays that came from several resources
-BLOCK = 8  # windows are looked at in blocks
 
 UNREACHABLE = -1  # a guide: the goal cannot be reached from the resource
 TOO_FAR = -2  # a guide: it can, in more than LARGEST ticks
@@ -26,6 +25,7 @@ FURTHER = -3  # a guide: the resource is further from the goal than any that the
 
 ASKED, KEPT, UNCHANGED, PREFIX, SHARED, BOUND = range(6)  # the counters, in the order of `Queries`
 COUNTERS = 6
+QUEUED, TURN, MARKS, CHANCE, MARKED, NOW, FORGOTTEN = range(7)  # the counts of a polish
 
 PLANS = 62  # plans that a set of plans in 64 bits can hold; the bit PLANS stands for all others
 ANSWERS = 512  # of queries, that a round keeps

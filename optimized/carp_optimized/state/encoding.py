@@ -6,20 +6,9 @@ from typing import TypeAlias
 
 import numpy as np
 
+from carp_optimized.jit.blocks import BLOCK
 from carp_optimized.jit.kinds import Ints, Longs
-from carp_optimized.state.arrays import (
-    BLOCK,
-    COUNTERS,
-    GROUPED,
-    NEVER,
-    NONE,
-    UNKNOWN,
-    Graph,
-    Records,
-    Robots,
-    State,
-    Stops,
-)
+from carp_optimized.state.arrays import COUNTERS, GROUPED, NEVER, NONE, UNKNOWN, Graph, Records, Robots, State, Stops
 from carp_optimized.state.room import (
     all_free,
     no_guides,

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from carp_optimized.jit.blocks import BLOCK
 from carp_optimized.jit.kinds import Flags, Ints, Longs
 from carp_optimized.state.arrays import (
     ANSWERS,
-    BLOCK,
     MOST_TURNS,
     NEVER,
     NONE,

@@ -10,10 +10,10 @@ from carp_optimized.crowds.rounds import GREEDY
 from carp_optimized.crowds.sipp import EFFORT, GREED, UNTIL_FOUND
 from carp_optimized.crowds.state import CHANCE, SIZE, TOTAL, Rounds, begin_round, rounds_at
 from carp_optimized.crowds.stays import no_paths, solution_along
+from carp_optimized.draws import SURE
 from carp_optimized.improve.planning import plan_crowd
 from carp_optimized.jit.compiling import entry
 from carp_optimized.jit.references import Native
-from carp_optimized.neighbourhood.polishing import SURE
 from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, judge
 
 ROBOTS, CROWDED, TRIES = 24, 60, 40

@@ -12,11 +12,11 @@ from numba.extending import intrinsic
 
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import WORD, is_uncompiled, place_in
-from carp_optimized.state.arrays import BLOCK
 
 Below: TypeAlias = Callable[[Ints, int, int], int]
 OfBits: TypeAlias = Callable[[int], int]
 
+BLOCK = 8
 INT = ir.IntType(32)
 
 
