@@ -6,11 +6,48 @@ from itertools import pairwise
 
 import numpy as np
 
+from carp_optimized import passes
+from carp_optimized.fleet import PlannedFleet
 from carp_optimized.jit.references import Native
 from carp_optimized.queries.paths import add_disjoint, reach_beside
+from carp_optimized.queries.search import ALONE
 from carp_optimized.state.arrays import NO_LIMIT, NONE, State
+from carp_spec import FixedPaths
+from carp_spec.limits import refuse_stops
 
 Path = Sequence[int]
+
+
+def fixed_paths(fleet: PlannedFleet, options: FixedPaths) -> None:
+    """Plan all robots in the order given, as if there were no plans yet, each on the best of a few paths."""
+    refuse_stops(fleet.instance)
+    fleet.clear()
+    for robot in range(fleet.held.size):
+        add_on_path(fleet, robot, paths_of(fleet, robot, options))
+
+
+def paths_of(fleet: PlannedFleet, robot: int, options: FixedPaths) -> list[Path]:
+    """The paths from which a robot may choose."""
+    start, goal = int(fleet.state.robots.start[robot]), int(fleet.state.robots.goal[robot])
+    choose = shortest_paths if options.paths == "shortest" else disjoint_paths
+    return fleet.call(lambda: choose(fleet.native, start, goal, options.k))
+
+
+def add_on_path(fleet: PlannedFleet, robot: int, paths: Sequence[Path]) -> bool:
+    """Add a robot on the path on which it arrives first, the first of equals; whether it has a plan on any."""
+    fleet.forget_old_records()
+
+    def attempt() -> list[int]:
+        passes.reach_from_everywhere(fleet.native, robot)
+        moves = PathMoves(fleet.state)
+        return [passes.find_one(moves.along(path), robot, NONE, 0, ALONE) for path in paths]
+
+    found = [record for record in fleet.call(attempt) if record != NONE]
+    if not found:
+        return False
+    best = np.array([min(found, key=lambda record: int(fleet.state.records.arrival[record]))], np.int32)
+    fleet.reserve(np.array([robot], np.int32), best)
+    return True
 
 
 def shortest_paths(native: Native[State], start: int, goal: int, k: int) -> list[Path]:

@@ -6,42 +6,30 @@ from typing import TypeVar
 import numpy as np
 
 from carp_optimized import passes
-from carp_optimized.fixed_paths import Path, PathMoves, disjoint_paths, shortest_paths
 from carp_optimized.jit.compiling import RecordsExhausted, RoomExhausted, TicksExhausted
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
-from carp_optimized.neighbourhood.adding import add_robot
-from carp_optimized.neighbourhood.polishing import play_rounds
 from carp_optimized.neighbourhood.reuse import Queries, Reuse
 from carp_optimized.queries.search import ALONE
 from carp_optimized.recording import enlarged, read_plan, write_plan
 from carp_optimized.state import encoding, limits, room
 from carp_optimized.state.arrays import (
-    FORGOTTEN,
     LARGEST,
     NONE,
-    NOW,
-    QUEUED,
-    TURN,
-    UNASKED,
     UNKNOWN,
     Adding,
     Options,
-    Polish,
     Records,
     State,
 )
 from carp_optimized.state.records import keep_records
-from carp_spec import FixedPaths, Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Shuffled, Solution
+from carp_spec import Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Solution
 from carp_spec.documents.solutions import PlanColumns
 from carp_spec.inputs.values import require_instance
-from carp_spec.limits import refuse_stops
-from carp_spec.permutations import shuffle, splitmix64
 
 T = TypeVar("T")
 
 WITH_STOPS = Reuse(unchanged=False, prefixes=False, shared=False, bounds=False)
-PART = 64  # robots of a pass between two looks at a clock
 MORE = 64  # robots for which there is room
 MANY = 1 << 16  # visits and expansions of records that are no longer held
 
@@ -64,7 +52,6 @@ class PlannedFleet:
         self.instance = instance
         self.reuse = reuse or Reuse()
         self._adding: Native[Adding] | None = None
-        self._path_moves: PathMoves | None = None
         self._take(encoding.encode(instance))
         self._ids = [robot.id for robot in instance.robots]
         self._names = [*instance.graph.index]
@@ -72,12 +59,12 @@ class PlannedFleet:
         self._vacant: list[int] = []
         self._destinations = encoding.destinations_in_use(self.state)
         self._numbered = self.state.guides.goal.size
-        self._order = np.zeros(0, np.int32)
-        self._records = np.full(len(instance.robots), NONE, np.int32)
-        self._noted = self._records
+        self.planned = np.zeros(0, np.int32)
+        self.held = np.full(len(instance.robots), NONE, np.int32)
+        self._noted = self.held
         self._plans: dict[int, Plan] = {}
         self._many = MANY
-        self._forgotten = 0
+        self.forgotten = 0
         self._options: Neighbourhood | None = None
         self._reuse: Reuse | None = None
 
@@ -89,12 +76,17 @@ class PlannedFleet:
     @property
     def plans(self) -> tuple[Plan, ...]:
         """The plans in planning order."""
-        return tuple(self._plan(int(self._records[robot])) for robot in self._order)
+        return tuple(self.plan_of(int(self.held[robot])) for robot in self.planned)
 
     @property
     def order(self) -> tuple[int, ...]:
         """The robots that have a plan, in planning order."""
-        return tuple(int(robot) for robot in self._order)
+        return tuple(int(robot) for robot in self.planned)
+
+    @property
+    def robots(self) -> Ints:
+        """All robots, those without a plan too."""
+        return np.array(sorted(self._index.values()), np.int32)
 
     def index(self, robot: RobotId) -> int:
         """The index of a robot in the instance."""
@@ -120,12 +112,12 @@ class PlannedFleet:
             self._vacant = [*range(size - 1, len(self._ids) - 1, -1)]
             self._make_room(size, robot)
         index = self._vacant.pop()
-        self._write(robot, index)
+        self.write(robot, index)
         self._ids[index] = robot.id
         self._index[robot.id] = index
         return index
 
-    def _write(self, robot: Robot, index: int) -> None:
+    def write(self, robot: Robot, index: int) -> None:
         """Write a robot over the one at an index."""
         ends = encoding.destinations_of(self.instance, robot)
         new = {end for end in ends if end not in self._destinations}
@@ -151,70 +143,52 @@ class PlannedFleet:
 
     def remove(self, robot: int) -> None:
         """Forget a robot, as `dismiss` does, that may be in the way of others still."""
-        self._ask_again()
+        self.ask_again()
         self.dismiss([robot])
 
     def withdraw(self, robots: Sequence[int] | Ints) -> None:
         """Take the plans of robots away, of those that have one."""
         gone = np.array(robots, np.int32)
-        held = self._records[gone]
+        held = self.held[gone]
         held = held[held != NONE]
         if held.size:
             self.call(lambda: passes.withdraw_all(self.native, held))
-            order = self._order[~np.isin(self._order, gone)]
-            self._hold(order, self._records[order])
+            order = self.planned[~np.isin(self.planned, gone)]
+            self.hold(order, self.held[order])
 
     @property
     def places(self) -> tuple[Ints, list[RobotId]]:
         """The robots that have a plan, in planning order, and the ids of all indices; neither changes any more."""
-        return self._order, self._ids.copy()
+        return self.planned, self._ids.copy()
 
     def ended(self, now: int) -> tuple[int, ...]:
         """The robots whose plans are in nobody's way from the tick `now` on."""
         if self.state.parks:
             return ()
-        leave = self.state.records.leave[self._records[self._order]]
-        return tuple(self._order[leave <= now - self.state.gap].tolist())
+        leave = self.state.records.leave[self.held[self.planned]]
+        return tuple(self.planned[leave <= now - self.state.gap].tolist())
 
     def note(self) -> None:
         """Note the plans as they are now."""
-        self._noted = self._records.copy()
+        self._noted = self.held.copy()
 
     def changed(self) -> tuple[PlanColumns, ...]:
         """The plans that are not those that were noted, in planning order; robots may have come since."""
-        held = self._records[self._order]
-        return tuple(map(self._columns, held[held != self._noted[self._order]].tolist()))
+        held = self.held[self.planned]
+        return tuple(map(self.columns, held[held != self._noted[self.planned]].tolist()))
 
     def replan(self, plans: Sequence[Plan], order: Sequence[RobotId]) -> None:
         """Take over other plans of robots that have one, and the planning order of all."""
-        self._ask_again()
+        self.ask_again()
         changed = np.array([self._index[plan.robot] for plan in plans], np.int32)
         records = np.array([self.record(plan) for plan in plans], np.int32)
         self.withdraw(changed)
-        self._reserve(changed, records)
+        self.reserve(changed, records)
         robots = np.array([self._index[id] for id in order], np.int32)
-        self._hold(robots, self._records[robots])
-
-    def assign(
-        self, robot: Robot, before: Robot, plan: Plan, now: int, options: Neighbourhood, number: int | None = None
-    ) -> bool:
-        """Plan again, as `add` does, a robot that has other stops than `before`, and has followed the plan until now.
-
-        If it finds no plan, all is as before. What queries have noted may stay: for a robot with stops it is not
-        used, and once the robot has vanished, its plan before has ended too, as that left no later.
-        """
-        index, order = self._index[robot.id], self._order
-        self.withdraw([index])
-        self._write(robot, index)
-        if self.add(index, now, options, number, plan):
-            return True
-        self._write(before, index)
-        self.commit([plan])
-        self._hold(order, self._records[order])
-        return False
+        self.hold(robots, self.held[robots])
 
     @property
-    def _kinds(self) -> Reuse:
+    def kinds(self) -> Reuse:
         """The kinds of reuse; robots with stops do not note what their queries read, and have but one."""
         return self.reuse if self.state.stops.first[-1] == 0 else WITH_STOPS
 
@@ -225,13 +199,13 @@ class PlannedFleet:
     @property
     def visits(self) -> int:
         """The visits of all plans together."""
-        return int(self.state.records.visits[self._records[self._order]].sum(dtype=np.int64))
+        return int(self.state.records.visits[self.held[self.planned]].sum(dtype=np.int64))
 
     def commit(self, plans: Sequence[Plan]) -> None:
         """Take over plans made elsewhere, which must fit the plans of the fleet."""
         records = np.array([self.record(plan) for plan in plans], np.int32)
         robots = np.array([self._index[plan.robot] for plan in plans], np.int32)
-        self._reserve(robots, records)
+        self.reserve(robots, records)
 
     def commit_solution(self, solution: Solution) -> None:
         """Take over the plans of a solution, in its planning order."""
@@ -247,246 +221,42 @@ class PlannedFleet:
         limits.refuse_tick("$.now", now)
         followed = NONE if before is None else self.record(before)
         record = self.call(lambda: passes.find_one(self.native, robot, followed, now, asked))
-        return None if record == NONE else self._plan(record)
+        return None if record == NONE else self.plan_of(record)
 
-    def plan_again(self, robot: int, now: int = 0) -> bool:
-        """Plan a robot beside the plans of all others; whether it has none so far, or one that arrives later.
-
-        If so, it comes last in the planning order; if not, all is as before. It keeps what it has done until now.
-        """
-        own, order = np.array([robot], np.int32), self._order
-        held = self._records[own]
-        self.withdraw(own)
-        followed = int(held[0]) if now > 0 else NONE
-        found = np.full(1, self.call(lambda: passes.find_one(self.native, robot, followed, now, ALONE)), np.int32)
-        is_better = bool(found[0] != NONE and (held[0] == NONE or self._cost(found) < self._cost(held)))
-        if is_better:
-            self._reserve(own, found)
-        elif held[0] != NONE:
-            self._reserve(own, held)
-            self._hold(order, self._records[order])
-        return is_better
-
-    def put_in_order(self, goes_on: Callable[[], bool]) -> None:
-        """Put plans of tick 0 into an order in which none is late beside those before it, as far as there is one.
-
-        A plan that is best beside some plans stays so beside more: it is next as soon as it is. Others come last, and
-        so do those for which there is no time.
-        """
-        if not goes_on():
-            return
-        records, waiting, last = self._records.copy(), [*self.order], -1
-        self.clear()
-        while len(waiting) != last and goes_on():
-            last = len(waiting)
-            for robot in tuple(waiting):
-                own = np.array([robot], np.int32)
-                if goes_on() and self._is_best(robot, records[own]):
-                    waiting.remove(robot)
-                    self._reserve(own, records[own])
-        rest = np.array(waiting, np.int32)
-        self._reserve(rest, records[rest])
-
-    def _is_best(self, robot: int, record: Ints) -> bool:
-        """Whether the robot, which has no plan now, could not arrive earlier than by that one."""
-        used = self.state.records.used.copy()
-        found = np.full(1, self.call(lambda: passes.find_one(self.native, robot, NONE, 0, ALONE)), np.int32)
-        is_best = found[0] != NONE and self._cost(found) == self._cost(record)
-        self.state.records.used[:] = used
-        return bool(is_best)
-
-    def find_beside(self, robot: int, records: Sequence[int]) -> Plan | None:
-        """The plan of a robot as `find` makes it without history, beside further plans, which `record` has taken up."""
-        further = np.array(records, np.int32)
-
-        def attempt() -> int:
-            passes.reserve_all(self.native, further)
-            found = passes.find_one(self.native, robot, NONE, 0, ALONE)
-            passes.withdraw_all(self.native, further)
-            return found
-
-        found = self.call(attempt)
-        return None if found == NONE else self._plan(found)
-
-    def repeat_query(self, robot: int, times: int) -> None:
-        """Ask the query of a robot without a plan that often; for benchmarks."""
-        self.call(lambda: passes.repeat_query(self.native, robot, times))
-
-    def carp(self, order: Sequence[int], goes_on: Callable[[], bool] = lambda: True) -> None:
-        """Plan the robots in order, as if there were no plans yet, as long as it goes on."""
-        self.clear()
-        self.state.records.used[:] = 0
-        self._plans.clear()
-        robots = np.array(order, np.int32)
-        self._pass(robots, self._records, 0, goes_on)
-
-    def shuffled(self, planner: Shuffled, order: Sequence[int], advance: Callable[[], None], now: int = 0) -> None:
-        """The best of several passes of CARP; robots that have a plan keep what they did until now."""
-        followed = self._records.copy()
-        self.clear()
-        stream = splitmix64(planner.seed)
-        best_worth: tuple[int, int] | None = None
-        best = np.zeros(0, np.int32), np.zeros(0, np.int32)
-        for attempt in range(planner.attempts):
-            order = order if attempt == 0 else shuffle(order, stream)
-            used = self.state.records.used.copy()
-            robots = np.array(order, np.int32)
-            plans = self._pass(robots, followed, now)
-            found = plans != NONE
-            worth = (-int(found.sum()), self._cost(plans[found]))
-            self.clear()
-            if best_worth is None or worth < best_worth:
-                best_worth, best = worth, (robots[found], plans[found])
-            else:
-                self.state.records.used[:] = used
-            advance()
-        self._reserve(*best)
-
-    def greedy(self, advance: Callable[[], None]) -> None:
-        """Plan all robots, as if there were no plans yet, each time the one whose plan is cheapest."""
-        self.clear()
-        count = len(self._records)
-        robots, plans = np.zeros(count, np.int32), np.full(count, NONE, np.int32)
-
-        def rounds() -> int:
-            waiting, found = np.arange(count, dtype=np.int32), np.full(count, UNASKED, np.int32)
-            return passes.greedy(self.native, waiting, found, robots, plans, self.reuse.unchanged)
-
-        planned = self.call(rounds)
-        self._hold(robots[:planned], plans[:planned])
-        for _ in range(planned):
-            advance()
-
-    def fixed_paths(self, options: FixedPaths) -> None:
-        """Plan all robots in the order given, as if there were no plans yet, each on the best of a few paths."""
-        refuse_stops(self.instance)
-        self.clear()
-        for robot in range(len(self._records)):
-            self.add_on_path(robot, self.paths(robot, options))
-
-    def paths(self, robot: int, options: FixedPaths) -> list[Path]:
-        """The paths from which a robot may choose."""
-        start, goal = int(self.state.robots.start[robot]), int(self.state.robots.goal[robot])
-        choose = shortest_paths if options.paths == "shortest" else disjoint_paths
-        return self.call(lambda: choose(self.native, start, goal, options.k))
-
-    def add_on_path(self, robot: int, paths: Sequence[Path]) -> bool:
-        """Add a robot on the path on which it arrives first, the first of equals; whether it has a plan on any."""
-        self.forget_old_records()
-
-        def attempt() -> list[int]:
-            passes.reach_from_everywhere(self.native, robot)
-            moves = self._path_moves = self._path_moves or PathMoves(self.state)
-            return [passes.find_one(moves.along(path), robot, NONE, 0, ALONE) for path in paths]
-
-        found = [record for record in self.call(attempt) if record != NONE]
-        if not found:
-            return False
-        best = np.array([min(found, key=lambda record: int(self.state.records.arrival[record]))], np.int32)
-        self._reserve(np.array([robot], np.int32), best)
-        return True
-
-    def add(
-        self, robot: int, now: int, options: Neighbourhood, number: int | None = None, before: Plan | None = None
-    ) -> bool:
-        """Add a robot by the neighbourhood planner; if it stays unplanned, all plans stay as they are.
-
-        Orders are drawn for its `number` in the instance, which is its index unless given. A robot that is to be
-        planned again has followed the plan `before` until now.
-        """
-        limits.refuse_tick("$.now", now)
-        self.forget_old_records()
-        followed = NONE if before is None else self.record(before)
-        order = np.empty(self._order.size + 1, np.int32)
-
-        def attempt() -> bool:
-            adding = self._adding_with(options)
-            if options.sample is not None:  # orders are drawn
-                adding.fields.work.stream[0] = (options.seed + (robot if number is None else number)) % 2**64
-            return add_robot(adding, self._order, robot, followed, now, order)
-
-        if self.call(attempt):
-            self._order = order
-            self._records = self.state.reserved.copy()
-            return True
-        if options.fallback is None:
-            return False
-        return self._fall_back(robot, followed, now, Shuffled(options.fallback, options.seed))
-
-    def polishing(self, seed: int, now: int = 0) -> Native[Polish]:
-        """The arrays for polishing this fleet at a tick, from the plans that it has."""
-        limits.refuse_tick("$.now", now)
-        able = np.array(sorted(self._index.values() if now == 0 else self.order), np.int32)
-        followed = self._records if now > 0 else np.full(len(self._records), NONE, np.int32)
-        costs = np.full(len(self._records), NONE, np.int64)
-        self.call(lambda: passes.cost_each_alone(self._empty, able, followed, now, costs))
-        past = np.zeros(len(self._records), np.int32)
-        for robot in self._order if now > 0 else ():
-            past[robot] = sum(enter <= now for enter in self._columns(int(self._records[robot])).enters)
-        polish = room.no_polish(costs, past, self.state.graph.duration.size)
-        polish.stream[0] = seed
-        polish.counts[NOW] = now
-        polish.counts[FORGOTTEN] = self._forgotten
-        return Native(polish)
-
-    def polish(self, polishing: Native[Polish], rounds: int) -> int:
-        """Play rounds of `polish/...`; returns how many were played before nothing was left to do."""
-        self.forget_old_records()
-        work = polishing.fields
-        size, turn, stream = self._order.size, int(work.counts[TURN]), int(work.stream[0])
-        if work.counts[FORGOTTEN] != self._forgotten:
-            work.alone[work.alone != NONE] = UNASKED
-            work.counts[FORGOTTEN] = self._forgotten
-        alone = work.alone.copy()
-
-        def attempt() -> int:
-            work.alone[:] = alone
-            work.queue[:size] = self._order
-            work.plans[:] = self._records
-            work.counts[QUEUED], work.counts[TURN], work.stream[0] = size, turn, stream
-            return play_rounds(self.native, polishing, self._empty, rounds)
-
-        played = self.call(attempt)
-        order = work.queue[: work.counts[QUEUED]].copy()
-        self._hold(order, work.plans[order])
-        self._ask_again()
-        return played
-
-    def _ask_again(self) -> None:
+    def ask_again(self) -> None:
         """Let all queries be asked again: plans are withdrawn that have been in the way of others."""
-        self.state.records.expansions[self._records[self._order]] = UNKNOWN
+        self.state.records.expansions[self.held[self.planned]] = UNKNOWN
 
     @property
     def worth(self) -> tuple[int, int]:
         """The number of unplanned robots, and the total cost of the others."""
-        return (self._records.size - self._order.size, self._cost(self._records[self._order]))
+        return (self.held.size - self.planned.size, self.cost(self.held[self.planned]))
 
-    def _adding_with(self, options: Neighbourhood) -> Native[Adding]:
+    def adding_with(self, options: Neighbourhood) -> Native[Adding]:
         """All that adding a robot with these options takes, kept as long as they and the arrays stay the same."""
-        reuse = self._kinds
+        reuse = self.kinds
         if self._adding is not None and self._options is options and self._reuse is reuse:
             return self._adding
         self._options, self._reuse = options, reuse
         kinds = (reuse.kept, reuse.unchanged, reuse.prefixes, reuse.shared, reuse.bounds)
-        members, sample = min(options.m, len(self._records) + 1), options.sample or 0
+        members, sample = min(options.m, len(self.held) + 1), options.sample or 0
         encoded = Options(members, sample, options.baseline, *kinds)
         if self._adding is None or self._adding.fields.options != encoded:
-            work = room.no_work(len(self._records), members, sample)
+            work = room.no_work(len(self.held), members, sample)
             answers = room.no_answers(members, self.state.graph.duration.size)
-            self._adding = Native(Adding(self.state, self._empty.fields, encoded, work, answers))
+            self._adding = Native(Adding(self.state, self.empty.fields, encoded, work, answers))
         return self._adding
 
     def clear(self) -> None:
         """Forget all plans."""
-        self.withdraw(self._order)
+        self.withdraw(self.planned)
 
     def _take(self, state: State) -> None:
         """Work on other arrays."""
         self.state = state
         self.native = Native(state)
-        self._empty = Native(encoding.without_reservations(state))
+        self.empty = Native(encoding.without_reservations(state))
         self._adding = None
-        self._path_moves = None
 
     def _make_room(self, size: int, robot: Robot) -> None:
         """Make room for that many robots, up to that robot's pace, and more destinations; guides are made again."""
@@ -497,50 +267,22 @@ class PlannedFleet:
         more = size - len(self._ids)
         self._ids += more * [""]
         nothing = np.full(more, NONE, np.int32)
-        self._records = np.concatenate([self._records, nothing])
+        self.held = np.concatenate([self.held, nothing])
         self._noted = np.concatenate([self._noted, nothing])
 
-    def _fall_back(self, robot: int, followed: int, now: int, planner: Shuffled) -> bool:
-        order, held = self._order, self._records[self._order]
-        self._records[robot] = followed
-        self.shuffled(planner, [*self.order, robot], lambda: None, now)
-        if self._order.size == order.size + 1:
-            return True
-        self.clear()
-        self._reserve(order, held)
-        return False
-
-    def _pass(self, robots: Ints, followed: Ints, now: int, goes_on: Callable[[], bool] = lambda: True) -> Ints:
-        """Plan robots in order as long as it goes on, where there are no plans yet, and hold the plans found.
-
-        A part at a time, so that little is done again where there was too little room.
-        """
-        plans = np.full(robots.size, NONE, np.int32)
-        for first in range(0, robots.size, PART):
-            if not goes_on():
-                break
-            part, found = robots[first : first + PART], plans[first : first + PART]
-
-            def attempt(part: Ints = part, found: Ints = found, first: int = first) -> None:
-                passes.carp(self.native, part, followed, now, found, first)
-
-            self.call(attempt)
-            held = plans[: first + PART]
-            self._hold(robots[: first + PART][held != NONE], held[held != NONE])
-        return plans
-
-    def _reserve(self, robots: Ints, records: Ints) -> None:
+    def reserve(self, robots: Ints, records: Ints) -> None:
         """Hold further plans behind those held."""
         self.call(lambda: passes.reserve_all(self.native, records))
-        self._hold(np.append(self._order, robots), np.append(self._records[self._order], records))
+        self.hold(np.append(self.planned, robots), np.append(self.held[self.planned], records))
 
-    def _hold(self, robots: Ints, records: Ints) -> None:
+    def hold(self, robots: Ints, records: Ints) -> None:
         """Note the plans that the windows hold."""
-        self._order = robots
-        self._records = np.full(self._records.size, NONE, np.int32)
-        self._records[robots] = records
+        self.planned = robots
+        self.held = np.full(self.held.size, NONE, np.int32)
+        self.held[robots] = records
 
-    def _cost(self, records: Ints) -> int:
+    def cost(self, records: Ints) -> int:
+        """What the plans of these records cost together."""
         held = self.state.records
         last = held.visits_at[records] + held.visits[records] - 1
         releases = self.state.robots.release[held.robot[records]]
@@ -567,7 +309,7 @@ class PlannedFleet:
         self.state.counters[:] = counters
         records.used[:] = used
         self._take(encoding.with_room(self.state, times * self.state.windows.start.size, records))
-        held = self._records[self._order]
+        held = self.held[self.planned]
         self.call(lambda: passes.reserve_all(self.native, held))
 
     def forget_old_records(self) -> None:
@@ -578,15 +320,15 @@ class PlannedFleet:
 
     def forget(self) -> None:
         """Keep only the records of the plans held."""
-        self._forgotten += 1
+        self.forgotten += 1
         used = self.state.records.used
-        kept = np.sort(self._records[self._order])
+        kept = np.sort(self.held[self.planned])
         number = np.full(int(used[0]) + 1, NONE, np.int32)  # the last is that of no record
         number[kept] = np.arange(kept.size)
         self._noted = number[self._noted]
         keep_records(self.native, kept)
         self._plans = {new: self._plans[int(old)] for new, old in enumerate(kept) if int(old) in self._plans}
-        self._records = self.state.reserved.copy()
+        self.held = self.state.reserved.copy()
         self._many = 4 * (int(used[1]) + int(used[2])) + MANY
 
     def record(self, plan: Plan) -> int:
@@ -597,10 +339,12 @@ class PlannedFleet:
         self._plans[record] = plan
         return record
 
-    def _plan(self, record: int) -> Plan:
+    def plan_of(self, record: int) -> Plan:
+        """The plan of a record."""
         if record not in self._plans:
-            self._plans[record] = self._columns(record).plan
+            self._plans[record] = self.columns(record).plan
         return self._plans[record]
 
-    def _columns(self, record: int) -> PlanColumns:
+    def columns(self, record: int) -> PlanColumns:
+        """The same as columns."""
         return read_plan(self.state, self._names, record, self._ids)

@@ -41,8 +41,6 @@ if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet
     from carp_spec.execution.traces import Trace
 
-ROUNDS = 50  # of a polish in one compiled call, if there are not so many
-VISITS = 20_000  # in all plans together
 PLANNERS = (Carp, Shuffled, LongestFirst, Greedy, Neighbourhood, FixedPaths)
 
 
@@ -111,22 +109,26 @@ def plan_with_fleet(
         )
         raise Refusal("option", "$.planner", "planner/options", message)
     require_planner(planner)
+    from carp_optimized.adding import add as add_robot  # noqa: PLC0415 - numba is slow to load
+    from carp_optimized.fixed_paths import fixed_paths  # noqa: PLC0415 - numba is slow to load
+    from carp_optimized.orderings import carp, greedy, shuffled  # noqa: PLC0415 - numba is slow to load
+
     fleet = _fleet(instance, reuse)
     everyone = range(len(instance.robots))
     match planner:
         case Carp():
-            fleet.carp(everyone)
+            carp(fleet, everyone)
         case Shuffled():
-            fleet.shuffled(planner, everyone, advance)
+            shuffled(fleet, planner, everyone, advance)
         case LongestFirst():
-            fleet.carp(sorted(everyone, key=lambda robot: -fleet.ticks_to_goal(robot)))
+            carp(fleet, sorted(everyone, key=lambda robot: -fleet.ticks_to_goal(robot)))
         case Greedy():
-            fleet.greedy(advance)
+            greedy(fleet, advance)
         case FixedPaths():
-            fleet.fixed_paths(planner)
+            fixed_paths(fleet, planner)
         case Neighbourhood():
             for robot in everyone:
-                fleet.add(robot, 0, planner)
+                add_robot(fleet, robot, 0, planner)
                 advance()
     return known(instance, Solution.of(instance, fleet.plans)), fleet
 
@@ -148,10 +150,12 @@ def add(
 
     If no plan is found, the robot is unplanned and all other plans stay as they are.
     """
+    from carp_optimized.adding import add as add_robot  # noqa: PLC0415 - numba is slow to load
+
     require_addition(instance, solution, robot, now, options)
     fleet = _fleet(instance, reuse)
     fleet.commit_solution(solution)
-    fleet.add(fleet.index(robot), now, options)
+    add_robot(fleet, fleet.index(robot), now, options)
     order = tuple(each.robot for each in fleet.plans)
     missing = {*solution.unplanned, robot}.difference(order)
     return known(instance, Solution(fleet.plans, order, tuple(each for each in instance.robot if each in missing)))
@@ -171,12 +175,14 @@ def assign(
     instance with its stops, and the plans; if no plan is found, both as they were. Raises `Refusal` for stops that
     break `instance/stops`, for a robot that has left, and for a solution that breaks a rule.
     """
+    from carp_optimized.adding import add as add_robot  # noqa: PLC0415 - numba is slow to load
+
     further = require_assignment(instance, solution, robot, stops, now, options)
     by_robot = {each.robot: each for each in solution.plans}
     with about_stops([*further.robot].index(robot)):
         fleet = _fleet(further)
     fleet.commit([by_robot[each] for each in solution.order if each != robot])
-    if not fleet.add(fleet.index(robot), now, options, before=by_robot[robot]):
+    if not add_robot(fleet, fleet.index(robot), now, options, before=by_robot[robot]):
         return instance, solution
     order = tuple(each.robot for each in fleet.plans)
     return further, known(further, Solution(fleet.plans, order, solution.unplanned))
@@ -196,7 +202,7 @@ def polish(
 
     It ends earlier if no plan can be shorter. Robots keep what they have done by the tick `now`; after tick 0, those
     without a plan get none. Equal iterations and seed give an equal solution. The time is looked at between calls of
-    `advance`, at most `ROUNDS` rounds apart.
+    `advance`, at most 50 rounds apart.
     Raises `Refusal` for wrong options, for a solution that breaks a rule, and for numbers that are too large.
     """
     started = perf_counter()
@@ -219,33 +225,9 @@ def polish_while(
     advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
 ) -> Solution:
     """The same for sound input, as long as it goes on, up to the last round, if there is one."""
+    from carp_optimized.polishing import polish_fleet  # noqa: PLC0415 - numba is slow to load
+
     fleet = _fleet(instance)
     fleet.commit_solution(whole)
     polish_fleet(fleet, goes_on, last, seed, now, advance)
     return known(instance, Solution.of(instance, fleet.plans))
-
-
-def polish_fleet(
-    fleet: "PlannedFleet",
-    goes_on: Callable[[], bool],
-    last: int | None,
-    seed: int,
-    now: int,
-    advance: Callable[[int, int, int], None] = lambda _, __, ___: None,
-) -> None:
-    """The same for the plans that a fleet has."""
-    polishing = fleet.polishing(seed, now)
-    played = fleet.polish(polishing, 0)
-    most = rounds_between_looks(fleet)
-    while played != last and goes_on():
-        rounds = most if last is None else min(most, last - played)
-        batch = fleet.polish(polishing, rounds)
-        played += batch
-        advance(played, *fleet.worth)
-        if batch < rounds:
-            break
-
-
-def rounds_between_looks(fleet: "PlannedFleet") -> int:
-    """How many rounds of a polish are played between two looks at a clock: fewer where each takes long."""
-    return max(ROUNDS * VISITS // max(fleet.visits, VISITS), 1)

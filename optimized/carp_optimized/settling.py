@@ -7,7 +7,13 @@ order in which none is late beside those before it, as far as there is one: what
 
 from collections.abc import Callable
 
+import numpy as np
+
+from carp_optimized import passes
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.jit.kinds import Ints
+from carp_optimized.queries.search import ALONE
+from carp_optimized.state.arrays import NONE
 from carp_spec import Instance, Solution
 
 
@@ -17,13 +23,13 @@ def settle(fleet: PlannedFleet, goes_on: Callable[[], bool] = lambda: True, now:
     Robots keep what they have done until now. At tick 0 those without a plan get one where there is room for it.
     """
     before = fleet.worth
-    _plan_again(fleet, goes_on, now)
+    _plan_all_again(fleet, goes_on, now)
     if now == 0:
-        fleet.put_in_order(goes_on)
+        put_in_order(fleet, goes_on)
     return fleet.worth < before
 
 
-def _plan_again(fleet: PlannedFleet, goes_on: Callable[[], bool], now: int) -> None:
+def _plan_all_again(fleet: PlannedFleet, goes_on: Callable[[], bool], now: int) -> None:
     robots = range(len(fleet.instance.robots)) if now == 0 else fleet.order
     is_better = True
     while is_better:
@@ -32,7 +38,60 @@ def _plan_again(fleet: PlannedFleet, goes_on: Callable[[], bool], now: int) -> N
             if not goes_on():
                 return
             fleet.forget_old_records()
-            is_better |= fleet.plan_again(robot, now)
+            is_better |= plan_again(fleet, robot, now)
+
+
+def plan_again(fleet: PlannedFleet, robot: int, now: int = 0) -> bool:
+    """Plan a robot beside the plans of all others; whether it has none so far, or one that arrives later.
+
+    If so, it comes last in the planning order; if not, all is as before. It keeps what it has done until now.
+    """
+    own, order = np.array([robot], np.int32), fleet.planned
+    held = fleet.held[own]
+    fleet.withdraw(own)
+    followed = int(held[0]) if now > 0 else NONE
+    found = _found(fleet, robot, followed, now)
+    is_better = bool(found[0] != NONE and (held[0] == NONE or fleet.cost(found) < fleet.cost(held)))
+    if is_better:
+        fleet.reserve(own, found)
+    elif held[0] != NONE:
+        fleet.reserve(own, held)
+        fleet.hold(order, fleet.held[order])
+    return is_better
+
+
+def _found(fleet: PlannedFleet, robot: int, followed: int = NONE, now: int = 0) -> Ints:
+    return np.full(1, fleet.call(lambda: passes.find_one(fleet.native, robot, followed, now, ALONE)), np.int32)
+
+
+def put_in_order(fleet: PlannedFleet, goes_on: Callable[[], bool]) -> None:
+    """Put plans of tick 0 into an order in which none is late beside those before it, as far as there is one.
+
+    A plan that is best beside some plans stays so beside more: it is next as soon as it is. Others come last, and
+    so do those for which there is no time.
+    """
+    if not goes_on():
+        return
+    records, waiting, last = fleet.held.copy(), [*fleet.order], -1
+    fleet.clear()
+    while len(waiting) != last and goes_on():
+        last = len(waiting)
+        for robot in tuple(waiting):
+            own = np.array([robot], np.int32)
+            if goes_on() and _is_best(fleet, robot, records[own]):
+                waiting.remove(robot)
+                fleet.reserve(own, records[own])
+    rest = np.array(waiting, np.int32)
+    fleet.reserve(rest, records[rest])
+
+
+def _is_best(fleet: PlannedFleet, robot: int, record: Ints) -> bool:
+    """Whether the robot, which has no plan now, could not arrive earlier than by that one."""
+    used = fleet.state.records.used.copy()
+    found = _found(fleet, robot)
+    is_best = found[0] != NONE and fleet.cost(found) == fleet.cost(record)
+    fleet.state.records.used[:] = used
+    return bool(is_best)
 
 
 def settled(instance: Instance, solution: Solution, goes_on: Callable[[], bool] = lambda: True) -> Solution:

@@ -92,8 +92,8 @@ if TYPE_CHECKING:
     from carproof.api.executing import release as release
     from carproof.api.executing import retime as retime
     from carproof.api.executing import untangle as untangle
-    from carproof.api.fleet import Change as Change
     from carproof.api.fleet import Fleet as Fleet
+    from carproof.api.fleet_memory import Change as Change
     from carproof.api.judging import audit as audit
     from carproof.api.judging import check as check
     from carproof.api.judging import check_trace as check_trace

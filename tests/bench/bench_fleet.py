@@ -14,6 +14,7 @@ from time import perf_counter, process_time
 from tests.bench.soak import Server
 
 from carp_optimized import plan
+from carp_optimized.adding import add
 from carp_optimized.fleet import PlannedFleet
 from carp_spec import Carp, Instance, Neighbourhood
 from carp_spec.documents.instances import instance_document, robot_document
@@ -47,7 +48,7 @@ def measure(robots: int) -> str:
         serving.append(processor_seconds(client) - served)
         assert answer["result"]["now"] == 0
         start = process_time()
-        core.add(core.enlist(robot), 0, Neighbourhood(), number)
+        add(core, core.enlist(robot), 0, Neighbourhood(), number)
         alone.append(process_time() - start)
     client.ask(op="stop")
     client.process.wait()

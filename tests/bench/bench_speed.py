@@ -12,6 +12,7 @@ import carp_reference
 from carp_experiments.measuring.bench import ROBOTS
 from carp_optimized import passes
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.orderings import carp
 from carp_optimized.state.arrays import NEVER
 from carproof.generate import Fleet, Grid, grid_instance
 
@@ -23,7 +24,7 @@ TIMES = 5_000
 def fleet_of(seed: int, robots: int = ROBOTS) -> PlannedFleet:
     """A fleet on map 20 with all robots but the last planned."""
     fleet = PlannedFleet(grid_instance(Grid(map=20), Fleet(robots=robots, seed=seed)))
-    fleet.carp(range(robots - 1))
+    carp(fleet, range(robots - 1))
     return fleet
 
 
@@ -58,9 +59,9 @@ def by_hand(program: Path, fleet: PlannedFleet, robot: int) -> tuple[int, float]
 def ours(fleet: PlannedFleet, robot: int) -> tuple[int, float]:
     """The same by the optimised planner."""
     plan = fleet.find(robot, None, 0)
-    fleet.repeat_query(robot, 10)
+    fleet.call(lambda: passes.repeat_query(fleet.native, robot, 10))
     began = thread_time_ns()
-    fleet.repeat_query(robot, TIMES)
+    fleet.call(lambda: passes.repeat_query(fleet.native, robot, TIMES))
     return -1 if plan is None else plan.visits[-1].enter, (thread_time_ns() - began) / TIMES
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import carp_reference
 from carp_optimized import Queries, Reuse
+from carp_optimized.adding import add
 from carp_spec import Instance, Neighbourhood, Plan, ResourceId, RobotId, Solution, Visit
 from carp_spec.permutations import shuffle, splitmix64
 from carproof.testing.random_instances import Draw, Mix, draw_instance, draw_plan
@@ -63,7 +64,7 @@ class Arrivals:
         fleet = PlannedFleet(self.instance, self.reuse)
         fleet.commit(self.before)
         for robot, now in self.robots:
-            fleet.add(fleet.index(robot), now, self.options)
+            add(fleet, fleet.index(robot), now, self.options)
         order = tuple(plan.robot for plan in fleet.plans)
         named = {*(plan.robot for plan in self.before), *(robot for robot, _ in self.robots)}
         unplanned = (robot.id for robot in self.instance.robots if robot.id in named and robot.id not in order)

@@ -13,10 +13,12 @@ from tests.optimized.arrivals import ROOMS, arrivals
 from tests.profiles import draws
 
 import carp_reference
+from carp_optimized.adding import add
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.neighbourhood import adding as neighbourhood
 from carp_optimized.neighbourhood import answers, distances
 from carp_optimized.neighbourhood.distances import follow, nearest
+from carp_optimized.orderings import carp
 from carp_optimized.queries.search import find_plan_alone, find_plan_by
 from carp_optimized.state.arrays import NEVER, NONE, Records, Work
 from carp_optimized.state.room import no_work
@@ -35,7 +37,7 @@ def planned_fleets(draw: st.DrawFn) -> PlannedFleet:
     grid = Grid(5, 5, map=draw(st.sampled_from([0, 5, 20])))
     robots = Fleet(draw(st.integers(3, 9)), draw(st.integers(0, 999)), release=Range(0, draw(st.sampled_from([0, 9]))))
     fleet = PlannedFleet(grid_instance(grid, robots))
-    fleet.carp(range(robots.robots))
+    carp(fleet, range(robots.robots))
     assume(len(fleet.order) > 1)
     return fleet
 
@@ -48,12 +50,12 @@ def by_law(fleet: PlannedFleet, one: int, other: int) -> Fraction:
 
 def split(fleet: PlannedFleet, members: int) -> Work:
     """The last robots are members, and the others outside."""
-    work = no_work(len(fleet._records), members, 0)
-    for robot in fleet._order:
-        follow(fleet.state, work, int(robot), int(fleet._records[robot]))
+    work = no_work(len(fleet.held), members, 0)
+    for robot in fleet.planned:
+        follow(fleet.state, work, int(robot), int(fleet.held[robot]))
     outside = len(fleet.order) - members
-    work.outside[:outside] = fleet._order[:outside]
-    work.members[:] = fleet._order[outside:]
+    work.outside[:outside] = fleet.planned[:outside]
+    work.members[:] = fleet.planned[outside:]
     work.ended[:] = 0
     return work
 
@@ -101,7 +103,7 @@ def what_was_read(records: Records, record: int) -> list[list[int]]:
 def test_a_plan_where_nothing_is_reserved_is_made_as_by_a_search(under_way: FleetUnderWay) -> None:
     fleet = PlannedFleet(under_way.instance)
     robot = fleet.index(under_way.robot)
-    state = fleet._empty.fields
+    state = fleet.empty.fields
     one = find_plan_alone(state, robot, NONE, under_way.now)
     other = find_plan_by(state, robot, NONE, under_way.now, NEVER, NEVER)
     assert (one == NONE) == (other == NONE)
@@ -127,7 +129,7 @@ def test_the_windows_hold_just_the_plans_whether_exchanged_whole_or_where_they_d
         if whole:
             patch.setattr(neighbourhood, whole, lambda *_: 0)
         for robot in range(14):
-            fleet.add(robot, 0, Neighbourhood(m=4))
+            add(fleet, robot, 0, Neighbourhood(m=4))
             fresh = PlannedFleet(instance)
             fresh.commit(fleet.plans)
             assert rows(fleet) == rows(fresh)

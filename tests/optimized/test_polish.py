@@ -11,6 +11,8 @@ from tests.spec.making import worth
 import carp_optimized
 import carp_optimized.fleet
 import carp_reference
+from carp_optimized.orderings import carp
+from carp_optimized.polishing import play, to_polish
 from carp_optimized.recording import enlarged
 from carp_optimized.state import encoding, room
 from carp_optimized.state.arrays import NONE, Records
@@ -102,7 +104,7 @@ def costs_alone(instance: Instance, solution: Solution, now: int) -> list[int | 
     plans = {plan.robot: plan for plan in solution.plans}
     fleet = carp_optimized.fleet.PlannedFleet(instance)
     fleet.commit([plans[each] for each in solution.order])
-    polishing = fleet.polishing(0, now).fields
+    polishing = to_polish(fleet, 0, now).fields
     problem = replace(prepare(instance, now), before=plans)
     able = [robot.id if now == 0 or robot.id in plans else None for robot in instance.robots]
     found = [None if robot is None else find_plan(problem, (), robot) for robot in able]
@@ -137,15 +139,15 @@ def test_plans_that_are_not_kept_take_no_room() -> None:
     fleet = carp_optimized.fleet.PlannedFleet(instance)
     fleet.commit(best.plans)
     before = int(fleet.state.records.used[0])
-    rounds = fleet.polish(fleet.polishing(1), 200)
+    rounds = play(fleet, to_polish(fleet, 1), 200)
     assert fleet.state.records.used[0] - before < rounds, "a round plans several members"
 
 
 def test_plans_alone_for_which_there_is_too_little_room_get_more(monkeypatch: pytest.MonkeyPatch) -> None:
     instance = grid_instance(Grid(), Fleet(robots=12, seed=1))
     fleet = carp_optimized.fleet.PlannedFleet(instance)
-    fleet.carp(range(12))
-    made = fleet.polish(fleet.polishing(1), 50), fleet.plans
+    carp(fleet, range(12))
+    made = play(fleet, to_polish(fleet, 1), 50), fleet.plans
 
     enlargements: list[Records] = []
 
@@ -157,10 +159,10 @@ def test_plans_alone_for_which_there_is_too_little_room_get_more(monkeypatch: py
     monkeypatch.setattr("carp_optimized.fleet.enlarged", enlarged_seldom)
     narrow = carp_optimized.fleet.PlannedFleet(instance)
     narrow._take(encoding.with_room(narrow.state, narrow.state.windows.start.size, room.no_records(2, 30, 30)))
-    narrow.carp(range(12))
+    carp(narrow, range(12))
     assert enlargements
     before = len(enlargements)
-    assert (narrow.polish(narrow.polishing(1), 50), narrow.plans) == made
+    assert (play(narrow, to_polish(narrow, 1), 50), narrow.plans) == made
     assert len(enlargements) > before
 
 
@@ -169,10 +171,10 @@ def test_plans_alone_are_found_again_once_records_are_forgotten() -> None:
     made = []
     for forgets in (False, True):
         fleet = carp_optimized.fleet.PlannedFleet(instance)
-        fleet.carp(range(20))
-        polishing = fleet.polishing(1)
+        carp(fleet, range(20))
+        polishing = to_polish(fleet, 1)
         for _ in range(20):
-            fleet.polish(polishing, 10)
+            play(fleet, polishing, 10)
             if forgets:
                 fleet.forget()
         made.append(fleet.plans)

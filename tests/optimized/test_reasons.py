@@ -38,7 +38,7 @@ def reasons_among(fleet: PlannedFleet, robot: int, record: int, latest: int, pla
     answers = no_answers(len(plans), fleet.state.graph.duration.size)
     start_answers(answers, len(plans))
     for member, plan in enumerate(plans):
-        held = int(fleet._records[fleet.index(plan.robot)])
+        held = int(fleet.held[fleet.index(plan.robot)])
         assert number_plan(fleet.state, answers, member, held) == member
     all_plans = (1 << len(plans)) - 1 | 1 << PLANS
     found = reasons(fleet.state, answers, robot, record, latest, all_plans)
@@ -68,7 +68,7 @@ def test_a_query_does_the_same_without_plans_that_are_no_reasons(under_way: Flee
     repeated, expanded_again = asked(again, robot, followed, under_way.now, latest)
     assert expanded_again == expanded
     assert (record == NONE) == (repeated == NONE)
-    assert record == NONE or again._plan(repeated) == fleet._plan(record)
+    assert record == NONE or again.plan_of(repeated) == fleet.plan_of(record)
 
 
 @pytest.mark.parametrize(("following", "waits"), [("allowed", 0), ("forbidden", 1)])
@@ -80,7 +80,7 @@ def test_a_plan_that_leaves_as_the_robot_comes_is_a_reason_where_following_is_fo
     plan = Plan("ahead", (Visit("c", 0, 2), Visit("x", 2, 3)))
     fleet = fleet_of(instance, [plan])
     record, _ = asked(fleet, 0, None, 0, NEVER)
-    assert fleet._plan(record).visits[-1].enter == 2 + waits
+    assert fleet.plan_of(record).visits[-1].enter == 2 + waits
     assert reasons_among(fleet, 0, record, NEVER, [plan]) == [plan] * waits
 
 

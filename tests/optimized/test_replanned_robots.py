@@ -5,6 +5,7 @@ from tests.optimized.towns import TOWNS
 
 import carp_optimized
 import carp_reference
+from carp_optimized.adding import add
 from carp_optimized.fleet import PlannedFleet
 from carp_spec import Neighbourhood, Solution
 from carproof.generate import Fleet, Grid, grid_instance
@@ -22,7 +23,7 @@ def test_the_robots_behind_get_the_plans_of_the_reference(name: str) -> None:
     for robot in range(last + 1):
         now, options = (0, ALONE) if robot < last else (town.now, Neighbourhood(m=town.m, baseline=town.baseline))
         solution = carp_reference.add(instance, solution, robot, now, options)
-        fleet.add(robot, now, options)
+        add(fleet, robot, now, options)
         assert fleet.plans == solution.plans
 
 

@@ -62,7 +62,7 @@ def may_differ(fleet: PlannedFleet, robot: RobotId, record: int, freed: Hulls) -
     resources = [instance.graph.resources[k].id for k in records.expanded[first : first + count].tolist()]
     expanded = list(zip(resources, records.ready[first : first + count].tolist(), strict=True))
     to_goal = ticks_to_goal(instance, instance.robot[robot])[0]
-    arrival = fleet._plan(record).visits[-1].enter
+    arrival = fleet.plan_of(record).visits[-1].enter
 
     def in_time(ready: int, target: ResourceId) -> bool:
         return least(ready, freed[target][0], instance.duration(robot, target), to_goal[target]) <= arrival
@@ -106,7 +106,7 @@ def test_a_query_is_repeated_only_where_the_lemma_says_and_else_finds_the_same(
     forget_freed(state.freed)
     whole: Hulls = {}
     for plan in freed:
-        withdrawn = int(fleet._records[fleet.index(plan.robot)])
+        withdrawn = int(fleet.held[fleet.index(plan.robot)])
         passes.withdraw_all(fleet.native, np.array([withdrawn], np.int32))
         note_freed(state, withdrawn, 0, 0)
         for resource, (earliest, latest) in hulls(instance, plan).items():
@@ -116,4 +116,4 @@ def test_a_query_is_repeated_only_where_the_lemma_says_and_else_finds_the_same(
     assert may_differ(fleet, robot, record, whole) or not is_repeated
     if not is_repeated:
         again = fleet_of(instance, tuple(plan for plan in others if plan not in freed))
-        assert again.find(again.index(robot), followed, under_way.now) == fleet._plan(record)
+        assert again.find(again.index(robot), followed, under_way.now) == fleet.plan_of(record)

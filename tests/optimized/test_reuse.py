@@ -12,7 +12,9 @@ from tests.profiles import draws
 
 import carp_optimized
 from carp_optimized import Reuse
+from carp_optimized.adding import add
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.orderings import carp
 from carp_optimized.state.arrays import ANSWERS, PLANS
 from carp_spec import Instance, Neighbourhood, Solution
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
@@ -49,10 +51,10 @@ def test_paper_sized_plans_are_the_same_whatever_is_reused(reuse: Reuse) -> None
 def counted(m: int, reuse: Reuse, sample: int | None = None, *, baseline: bool = True) -> carp_optimized.Queries:
     """The queries of adding a robot to nine on a grid with so much room that every query finds a plan."""
     fleet = PlannedFleet(grid_instance(Grid(8, 8), Fleet(COMMITTED + 1, seed=4 if baseline else 7)), reuse)
-    fleet.carp(range(COMMITTED))
+    carp(fleet, range(COMMITTED))
     before = fleet.queries.asked
     assert before == COMMITTED
-    assert fleet.add(COMMITTED, 0, Neighbourhood(m=m, sample=sample, baseline=baseline))
+    assert add(fleet, COMMITTED, 0, Neighbourhood(m=m, sample=sample, baseline=baseline))
     queries = fleet.queries
     return replace(queries, asked=queries.asked - before)
 
@@ -119,7 +121,7 @@ def test_more_plans_and_answers_than_there_is_room_for_change_no_plan() -> None:
     fleet = PlannedFleet(instance)
     most = [0, 0]
     for robot in range(14):
-        fleet.add(robot, 0, planner)
+        add(fleet, robot, 0, planner)
         assert fleet._adding is not None
         most = [max(pair) for pair in zip(most, fleet._adding.fields.answers.used[:2].tolist(), strict=True)]
     assert most == [PLANS, ANSWERS]
@@ -133,9 +135,9 @@ def test_a_fleet_that_stays_up_minds_which_reuse_is_on() -> None:
     asked = []
     for reuse in (Reuse(), ALL_OFF):
         fleet.reuse = reuse
-        fleet.carp(range(COMMITTED))
+        carp(fleet, range(COMMITTED))
         before = fleet.queries.asked
-        assert fleet.add(COMMITTED, 0, planner)
+        assert add(fleet, COMMITTED, 0, planner)
         asked.append(fleet.queries.asked - before)
     assert asked[0] < asked[1]
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import pytest
 
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.orderings import carp
 from carp_optimized.queries.search import ALONE, WHOLE
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 
@@ -35,7 +36,7 @@ def beside_others(crowd: str) -> Iterator[tuple[PlannedFleet, int]]:
     """Robots of a crowd, each with the fleet of all others that have plans."""
     instance = CROWDS[crowd]
     fleet = PlannedFleet(instance)
-    fleet.carp(range(len(instance.robots)))
+    carp(fleet, range(len(instance.robots)))
     for asked in range(0, len(instance.robots), 5):
         others = PlannedFleet(instance)
         others.commit([plan for robot, plan in zip(fleet.order, fleet.plans, strict=True) if robot != asked])
@@ -54,7 +55,7 @@ def entered_in_vain(crowd: str, asked: int) -> int:
     """The windows that the queries of the robots that a pass leaves without a plan enter, asked again behind it."""
     instance = CROWDS[crowd]
     fleet = PlannedFleet(instance)
-    fleet.carp(range(len(instance.robots)))
+    carp(fleet, range(len(instance.robots)))
     count = 0
     for robot in sorted({*range(len(instance.robots))} - {*fleet.order}):
         before = fleet.state.search.generation << 32

@@ -11,6 +11,7 @@ from carp_optimized import plan, polish
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.annealing import anneal
 from carp_optimized.improve.repair import repair
+from carp_optimized.polishing import play, to_polish
 from carp_optimized.state.arrays import CHANCE
 from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, judge, total_cost
 from carproof.generate import Fleet, Grid, grid_instance
@@ -66,9 +67,9 @@ def test_robots_that_share_a_lane_in_both_directions_learn_to_take_turns() -> No
     for seed in range(4):
         fleet = PlannedFleet(instance)
         fleet.commit(start.plans)
-        polishing = fleet.polishing(seed)
+        polishing = to_polish(fleet, seed)
         polishing.fields.counts[CHANCE] = 1
-        fleet.polish(polishing, 200)
+        play(fleet, polishing, 200)
         assert fleet.worth == (0, 440)
 
 

@@ -18,7 +18,10 @@ from carp_experiments.paper.map_cases import MAP_AXIS, MapCase, rows_by_map
 from carp_experiments.report import ExperimentReport, Figure, Table, lines_of, table_by_map
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
+from carp_optimized.adding import add
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.orderings import carp
+from carp_optimized.polishing import play, to_polish
 from carp_spec import Group, Instance, Neighbourhood
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 
@@ -73,11 +76,11 @@ def compared(case: MapCase, kind: str) -> Mapping[str, Sequence[Point]]:
         found[named(m)] = [(total_of(fleet), thread_time_ns() - started)]
     started = thread_time_ns()
     for _ in range(PASSES):
-        fleet.carp(range(case.robots))
-    carp = (thread_time_ns() - started) // PASSES
-    found[CARP] = [(total_of(fleet), carp)]
+        carp(fleet, range(case.robots))
+    spent = (thread_time_ns() - started) // PASSES
+    found[CARP] = [(total_of(fleet), spent)]
     curve = polished(fleet, case, ROUNDS if kind == PLAIN else ROUNDS_OF_KINDS)
-    return {**found, POLISH: [(total, carp + spent) for total, spent in curve]}
+    return {**found, POLISH: [(total, spent + further) for total, further in curve]}
 
 
 def add_all(fleet: PlannedFleet, case: MapCase, m: int) -> None:
@@ -85,17 +88,17 @@ def add_all(fleet: PlannedFleet, case: MapCase, m: int) -> None:
     planner = Neighbourhood(m=m, sample=SAMPLE if m >= DRAWN_FROM else None, seed=case.assignment)
     fleet.clear()
     for robot in range(case.robots):
-        fleet.add(robot, 0, planner)
+        add(fleet, robot, 0, planner)
 
 
 def polished(fleet: PlannedFleet, case: MapCase, rounds: Sequence[int]) -> list[Point]:
     """The totals after these numbers of rounds from the plans of CARP, and the nanoseconds until then."""
-    fleet.carp(range(case.robots))
+    carp(fleet, range(case.robots))
     began = thread_time_ns()
-    polishing = fleet.polishing(case.assignment)
+    polishing = to_polish(fleet, case.assignment)
     curve, played = [], 0
     for wanted in rounds:
-        fleet.polish(polishing, wanted - played)
+        play(fleet, polishing, wanted - played)
         played = wanted
         curve.append((total_of(fleet), thread_time_ns() - began))
     return curve

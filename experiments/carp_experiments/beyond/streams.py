@@ -15,7 +15,9 @@ from carp_experiments.paper.quality import ALGORITHMS, seeded
 from carp_experiments.report import ExperimentReport, Figure, lines_of, table_of
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
+from carp_optimized.adding import add
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.orderings import carp
 from carp_spec import Instance, Neighbourhood, Plan, Resource, ResourceGraph, total_cost, violations_of
 from carproof.generate import Fleet, Range
 
@@ -56,9 +58,9 @@ def streamed(case: MapCase, name: str, rate: int) -> Streamed:
     planner = seeded(ALGORITHMS[name], case.assignment)
     if isinstance(planner, Neighbourhood):
         for place, robot in enumerate(instance.robots):
-            fleet.add(place, robot.release, planner)
+            add(fleet, place, robot.release, planner)
     else:
-        fleet.carp(range(case.robots))
+        carp(fleet, range(case.robots))
     broken = violations_of(instance, fleet.plans)
     if broken or len(fleet.order) < case.robots:
         raise AssertionError(broken)

@@ -9,11 +9,14 @@ from dataclasses import asdict, dataclass
 from functools import partial
 from statistics import fmean, median
 from time import thread_time_ns
-from typing import TYPE_CHECKING
 
 import click
 
-from carp_spec import Instance, Neighbourhood
+from carp_optimized import passes
+from carp_optimized.adding import add
+from carp_optimized.fleet import PlannedFleet
+from carp_optimized.orderings import carp
+from carp_spec import Neighbourhood
 from carp_spec.documents.decoding import write
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import print_document
@@ -21,9 +24,6 @@ from carproof.command_line.options import json_option, listed
 from carproof.command_line.tables import print_table
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.progress import progress
-
-if TYPE_CHECKING:
-    from carp_optimized.fleet import PlannedFleet
 
 MAPS = (10, 20)
 ROBOTS = 100
@@ -129,35 +129,35 @@ def microseconds(work: Callable[[], object], prepare: Callable[[], object] = lam
     return median(times[1:])
 
 
-def query_time(fleet: "PlannedFleet", robot: int, times: int = 200) -> float:
+def query_time(fleet: PlannedFleet, robot: int, times: int = 200) -> float:
     """The time of one query of a robot against the fleet, asked again and again."""
-    return microseconds(lambda: fleet.repeat_query(robot, times)) / times
+    return microseconds(lambda: fleet.call(lambda: passes.repeat_query(fleet.native, robot, times))) / times
 
 
 def on_map(map: int, assignments: int, advance: Callable[[], None]) -> OnMap:
     """Measure on a map of the paper."""
-    queries, passes = [], []
+    queries, passes_us = [], []
     added: dict[tuple[int, str], list[Added]] = {(k, name): [] for k in (ROBOTS // 2, ROBOTS) for name in PROPOSED}
     for seed in range(assignments):
-        fleet = fleet_of(grid_instance(Grid(map=map, map_seed=seed), Fleet(robots=ROBOTS, seed=seed)))
-        pass_us = microseconds(partial(fleet.carp, range(ROBOTS)), fleet.clear)
-        fleet.carp(range(ROBOTS - 1))
+        fleet = PlannedFleet(grid_instance(Grid(map=map, map_seed=seed), Fleet(robots=ROBOTS, seed=seed)))
+        pass_us = microseconds(partial(carp, fleet, range(ROBOTS)), fleet.clear)
+        carp(fleet, range(ROBOTS - 1))
         queries.append(query_time(fleet, ROBOTS - 1))
-        passes.append(pass_us)
+        passes_us.append(pass_us)
         for (k, name), measured in added.items():
             measured.append(add_robot(fleet, k, name, pass_us))
         advance()
-    return OnMap(map, median(queries), median(passes), [medians(each) for each in added.values()])
+    return OnMap(map, median(queries), median(passes_us), [medians(each) for each in added.values()])
 
 
-def add_robot(fleet: "PlannedFleet", k: int, name: str, pass_us: float) -> Added:
+def add_robot(fleet: PlannedFleet, k: int, name: str, pass_us: float) -> Added:
     """Add the k-th robot to those before it, planned by CARP."""
-    fleet.carp(range(k - 1))
+    carp(fleet, range(k - 1))
     before = fleet.queries
-    fleet.add(k - 1, 0, PROPOSED[name])
+    add(fleet, k - 1, 0, PROPOSED[name])
     after = fleet.queries
     avoided = {kind: getattr(after, kind) - getattr(before, kind) for kind in after.avoided}
-    add_us = microseconds(partial(fleet.add, k - 1, 0, PROPOSED[name]), partial(fleet.carp, range(k - 1)))
+    add_us = microseconds(partial(add, fleet, k - 1, 0, PROPOSED[name]), partial(carp, fleet, range(k - 1)))
     return Added(k, name, add_us, add_us / pass_us, after.asked - before.asked, avoided)
 
 
@@ -178,7 +178,7 @@ def on_grid(side: int, advance: Callable[[], None]) -> OnGrid:
     """Measure how the times grow with the grid."""
     robots = side * side // 4
     last = robots - 1
-    fleet = fleet_of(grid_instance(Grid(width=side, height=side), Fleet(robots=robots)))
+    fleet = PlannedFleet(grid_instance(Grid(width=side, height=side), Fleet(robots=robots)))
 
     def timed(work: Callable[[], object]) -> float:
         started = thread_time_ns()
@@ -188,16 +188,16 @@ def on_grid(side: int, advance: Callable[[], None]) -> OnGrid:
             advance()
         return time_us
 
-    timed(partial(fleet.carp, range(last)))
-    pass_us = timed(partial(fleet.carp, range(last)))
-    fleet.carp(range(robots - QUERIED))
+    timed(partial(carp, fleet, range(last)))
+    pass_us = timed(partial(carp, fleet, range(last)))
+    carp(fleet, range(robots - QUERIED))
     queries: list[float] = []
     timed(lambda: queries.extend(query_time(fleet, robot, 10) for robot in range(robots - QUERIED, robots)))
     times, asked = [], 0
     for _ in range(GROWTH_REPETITIONS):
-        fleet.carp(range(last))
+        carp(fleet, range(last))
         before = fleet.queries.asked
-        times.append(timed(partial(fleet.add, last, 0, PROPOSED["4"])))
+        times.append(timed(partial(add, fleet, last, 0, PROPOSED["4"])))
         asked = fleet.queries.asked - before
     return OnGrid(side, robots, fmean(queries), pass_us, median(times), asked)
 
@@ -205,13 +205,6 @@ def on_grid(side: int, advance: Callable[[], None]) -> OnGrid:
 def weight(side: int) -> int:
     """The number of assignments on a map that take about as long as one of the `PARTS` of measuring a grid."""
     return max(1, (side // 40) ** 3)
-
-
-def fleet_of(instance: Instance) -> "PlannedFleet":
-    """An optimised fleet without plans."""
-    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - numba is slow to load
-
-    return PlannedFleet(instance)
 
 
 def show(maps: Sequence[OnMap], grids: Sequence[OnGrid]) -> None:

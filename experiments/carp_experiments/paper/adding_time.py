@@ -17,7 +17,9 @@ from carp_experiments.paper.quality import ALGORITHMS, outcome, plan_first, seed
 from carp_experiments.report import ExperimentReport, Figure, Table
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import MEASURED, Row
+from carp_optimized.adding import add
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.orderings import carp
 from carp_spec import Neighbourhood, Planner
 
 STEP = 5
@@ -51,7 +53,7 @@ def time_row(case: MapCase) -> Row:
 def warm_up(fleet: PlannedFleet, planner: Planner) -> None:
     """Load machine code and find the distances to all goals."""
     robots = len(fleet.instance.robots)
-    fleet.carp(range(robots))
+    carp(fleet, range(robots))
     plan_first(fleet, planner, min(planner.m + 1 if isinstance(planner, Neighbourhood) else 2, robots))
 
 
@@ -64,7 +66,7 @@ def times_of(fleet: PlannedFleet, planner: Planner) -> dict[str, int]:
     for k in range(1, robots + 1):
         if isinstance(planner, Neighbourhood):
             started = thread_time_ns()
-            fleet.add(k - 1, 0, planner)
+            add(fleet, k - 1, 0, planner)
         elif k in wanted:
             started = thread_time_ns()
             plan_first(fleet, planner, k)

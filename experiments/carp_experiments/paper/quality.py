@@ -23,7 +23,9 @@ from carp_experiments.paper.map_cases import (
 from carp_experiments.report import ExperimentReport, Figure, lines_of, table_by_map
 from carp_experiments.statistics import Interval, mean_interval, proportion_interval
 from carp_experiments.store import Row
+from carp_optimized.adding import add
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.orderings import carp, shuffled
 from carp_spec import Carp, LongestFirst, Neighbourhood, Planner, Shuffled, total_cost
 
 ALGORITHMS: Mapping[str, Planner] = {
@@ -76,21 +78,21 @@ def plan_first(fleet: PlannedFleet, planner: Planner, count: int) -> None:
     robots = range(count)
     match planner:
         case Shuffled():
-            fleet.shuffled(planner, robots, lambda: None)
+            shuffled(fleet, planner, robots, lambda: None)
         case LongestFirst():
-            fleet.carp(sorted(robots, key=lambda robot: -fleet.ticks_to_goal(robot)))
+            carp(fleet, sorted(robots, key=lambda robot: -fleet.ticks_to_goal(robot)))
         case Neighbourhood():
             fleet.clear()
             add_until_failure(fleet, planner, robots)
         case _:
-            fleet.carp(robots)
+            carp(fleet, robots)
 
 
 def add_until_failure(fleet: PlannedFleet, planner: Planner, robots: Iterable[int]) -> None:
     """Add robots until one stays unplanned."""
     assert isinstance(planner, Neighbourhood)  # noqa: S101 - a promise of ours
     for robot in robots:
-        if not fleet.add(robot, 0, planner):
+        if not add(fleet, robot, 0, planner):
             return
 
 

@@ -16,7 +16,9 @@ from carp_experiments.paper.quality import plan_first
 from carp_experiments.report import ExperimentReport, Figure, lines_of, table_by_map
 from carp_experiments.statistics import Interval, mean_interval, proportion_interval
 from carp_experiments.store import Row
+from carp_optimized.fixed_paths import add_on_path, paths_of
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.orderings import carp, greedy
 from carp_spec import FixedPaths, Instance, LongestFirst, Plan, plan_cost
 
 FIXED: Mapping[str, FixedPaths] = {
@@ -40,17 +42,17 @@ def related_row(case: MapCase) -> Row:
     fleet = PlannedFleet(instance_of(case))
     plans: dict[str, Sequence[Plan]] = {}
     everyone = range(case.robots)
-    paths = {FIXED[name].paths: [fleet.paths(robot, FIXED[name]) for robot in everyone] for name in CHOSEN}
+    paths = {FIXED[name].paths: [paths_of(fleet, robot, FIXED[name]) for robot in everyone] for name in CHOSEN}
     for name, options in FIXED.items():
         fleet.clear()
         for robot, choice in zip(everyone, paths[options.paths], strict=True):
-            fleet.add_on_path(robot, choice[: options.k])
+            add_on_path(fleet, robot, choice[: options.k])
         plans[name] = fleet.plans
-    fleet.carp(everyone)
+    carp(fleet, everyone)
     plans["CARP"] = fleet.plans
     plan_first(fleet, LongestFirst(), case.robots)
     plans["LF"] = fleet.plans
-    fleet.greedy(lambda: None)
+    greedy(fleet, lambda: None)
     plans["greedy"] = fleet.plans
     return {"costs": {name: costs_of(fleet.instance, found) for name, found in plans.items()}}
 

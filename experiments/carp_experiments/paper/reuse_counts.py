@@ -11,8 +11,10 @@ from carp_experiments.paper.map_cases import MapCase, instance_of
 from carp_experiments.report import ExperimentReport, Table
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
+from carp_optimized.adding import add
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.neighbourhood.reuse import Reuse
+from carp_optimized.orderings import carp
 from carp_spec import Neighbourhood
 
 NOTHING = Reuse(kept=False, unchanged=False, prefixes=False, shared=False, bounds=False)
@@ -40,10 +42,10 @@ def reuse_row(case: MapCase) -> Row:
         fleet.reuse = reuse
         asked[setting] = {}
         for m in (*SIZES, SAMPLED):
-            fleet.carp(range(case.robots - 1))
+            carp(fleet, range(case.robots - 1))
             before = fleet.queries
             sample = 150 if m == SAMPLED else None
-            fleet.add(case.robots - 1, 0, Neighbourhood(m, sample, case.assignment, baseline=False))
+            add(fleet, case.robots - 1, 0, Neighbourhood(m, sample, case.assignment, baseline=False))
             after = fleet.queries
             asked[setting][str(m)] = after.asked - before.asked
             if setting == "all":

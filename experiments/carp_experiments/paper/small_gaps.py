@@ -15,6 +15,7 @@ from carp_experiments.report import ExperimentReport, Figure, lines_of, table_by
 from carp_experiments.statistics import Interval, mean_interval
 from carp_experiments.store import Row
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.orderings import greedy
 from carp_optimum.bound import lower_bound
 from carp_optimum.optimum import optimum
 from carp_spec import Greedy, Instance, Planner, total_cost
@@ -46,7 +47,7 @@ def gap_row(case: MapCase) -> Row:
     results = {}
     for name, planner in COMPARED.items():
         if isinstance(planner, Greedy):
-            fleet.greedy(lambda: None)
+            greedy(fleet, lambda: None)
         else:
             plan_first(fleet, seeded(planner, case.assignment), case.robots)
         results[name] = outcome(fleet)

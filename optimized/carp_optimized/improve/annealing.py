@@ -19,7 +19,7 @@ from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.cycles import ENOUGH, HEAT, PARTS, REHEAT, chance
 from carp_optimized.improve.planning import improve_crowd
 from carp_optimized.improve.repair import repair
-from carp_optimized.planners import rounds_between_looks
+from carp_optimized.polishing import play, rounds_between_looks, to_polish
 from carp_optimized.settling import settle
 from carp_optimized.state.arrays import CHANCE
 from carp_spec import Instance, Refusal, Solution
@@ -95,9 +95,9 @@ def anneal(
     whole = sound_solution(instance, solution)
     fleet = PlannedFleet(instance)
     fleet.commit_solution(whole)
-    polishing = fleet.polishing(seed, now)
+    polishing = to_polish(fleet, seed, now)
     least = int(polishing.fields.least.sum())
-    played = fleet.polish(polishing, 0)
+    played = play(fleet, polishing, 0)
     given = plans = fleet.plans
     best = before = own = fleet.worth
     is_delayed = (best[1] - least) * MUCH > least
@@ -119,7 +119,7 @@ def anneal(
         expected = PARTS * played // max(spent, 1)
         heated = (HEAT if from_given else REHEAT) * max(own[1] - least, 0) // (COOLER if is_delayed else 1)
         polishing.fields.counts[CHANCE] = chance(heated, len(instance.robots), expected, PARTS - gone, power=1)
-        batch = fleet.polish(polishing, rounds)
+        batch = play(fleet, polishing, rounds)
         played += batch
         settling = ENDING * len(instance.robots) * (clock() - started) / max(played, 1)
         ending = min(max(settling, ending), seconds / MOST_ENDING)

@@ -20,7 +20,7 @@ from carp_optimized.improve.annealing import BRIEF, anneal
 from carp_optimized.improve.holding import plan_holding_starts
 from carp_optimized.improve.planning import Found, plan_crowd, time_of_visit
 from carp_optimized.improve.repair import plan_failed_first
-from carp_optimized.settling import settled
+from carp_optimized.settling import plan_again, settled
 from carp_optimized.state.limits import refuse_what_is_too_large
 from carp_spec import Instance, Solution
 from carp_spec.inputs.options import require_polish_options
@@ -91,7 +91,7 @@ def _first_plans(instance: Instance, spent: Callable[[], float], seconds: float 
     for robot in order:
         if not goes_on(fleet.visits):
             break
-        fleet.plan_again(robot)
+        plan_again(fleet, robot)
     if len(fleet.order) < len(order) and (seconds is None or 2 * spent() < seconds):
         other = plan_holding_starts(instance, order, goes_on)
         if len(other.plans) > len(fleet.order):

@@ -11,6 +11,7 @@ from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.settling import plan_again
 from carp_spec import Instance, Plan, Solution, Visit
 
 
@@ -23,7 +24,7 @@ def plan_holding_starts(instance: Instance, order: Sequence[int], goes_on: Calla
         if not goes_on(fleet.visits):
             break
         fleet.withdraw(held.give_up(robot))
-        fleet.plan_again(robot)
+        plan_again(fleet, robot)
     fleet.withdraw([*held.robots])
     return Solution.of(instance, fleet.plans)
 

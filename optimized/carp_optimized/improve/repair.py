@@ -14,10 +14,16 @@ from heapq import heappop, heappush
 from itertools import count, islice, takewhile
 from typing import TypeAlias
 
+import numpy as np
+
+from carp_optimized import passes
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.lacam.search import plans_by_steps
+from carp_optimized.orderings import carp
 from carp_optimized.planners import polish_while
+from carp_optimized.queries.search import ALONE
 from carp_optimized.settling import settled
+from carp_optimized.state.arrays import NONE
 from carp_spec import Instance, Plan, RobotId, Solution, Visit, total_cost
 from carp_spec.joint_rules import JOINT_RULES
 from carp_spec.requests import sound_solution
@@ -73,7 +79,7 @@ def plan_failed_first(instance: Instance, solution: Solution, goes_on: Callable[
     fleet = PlannedFleet(instance)
     order = [fleet.index(robot) for robot in (*solution.unplanned, *solution.order)]
     for _ in range(PASSES):
-        fleet.carp(order, goes_on)
+        carp(fleet, order, goes_on)
         planned = {*fleet.order}
         if len(planned) > len(solution.plans):
             solution = Solution.of(instance, fleet.plans)
@@ -196,7 +202,16 @@ class _Finder:
     def find(self, robot: RobotId, avoided: Sequence[Plan]) -> Plan | None:
         """The earliest plan of a robot that meets none of these plans."""
         records = [record for plan in avoided for record in self._filling(plan)]
-        return self._fleet.find_beside(self._fleet.index(robot), records)
+        further, fleet, index = np.array(records, np.int32), self._fleet, self._fleet.index(robot)
+
+        def attempt() -> int:
+            passes.reserve_all(fleet.native, further)
+            found = passes.find_one(fleet.native, index, NONE, 0, ALONE)
+            passes.withdraw_all(fleet.native, further)
+            return found
+
+        found = fleet.call(attempt)
+        return None if found == NONE else fleet.plan_of(found)
 
     def _filling(self, plan: Plan) -> list[int]:
         """The records of the plan, and of this many more visits of each resource that nobody has room beside it."""

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 
+from carp_optimized.orderings import carp
 from carp_optimum.sat.solver import TimeOver
 from carp_spec import Instance, Plan, Refusal, RobotId, Solution, total_cost
 
@@ -77,7 +78,7 @@ def ever_better(instance: Instance, look: Callable[[], None]) -> Iterator[tuple[
     from carp_optimum.sat.group_search import improved  # noqa: PLC0415
 
     fleet = PlannedFleet(instance)
-    fleet.carp(range(len(instance.robots)))
+    carp(fleet, range(len(instance.robots)))
     first = repair(instance, Solution.of(instance, fleet.plans))
     if len(first.plans) < len(instance.robots):
         return

@@ -1,154 +1,43 @@
 """A fleet in memory: news goes in, and the plans that changed come out."""
 
-from collections.abc import Container, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from time import perf_counter
 from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeVar
 
-from msgspec import structs
-
-from carp_spec import Instance, Neighbourhood, Plan, Refusal, ResourceId, Robot, RobotId, Solution, Stop
+from carp_spec import Instance, Neighbourhood, Plan, Refusal, Robot, RobotId, Solution, Stop
 from carp_spec.documents.solutions import PlanColumns
 from carp_spec.execution.traces import Trace
 from carp_spec.inputs.options import require_planner, require_polish_options
 from carp_spec.inputs.values import require_instance
-from carp_spec.instance_rules import ROBOT_RULES
-from carp_spec.plan_rules import has_ended, stops_served
+from carp_spec.plan_rules import has_ended
 from carp_spec.planners import BY_DEFAULT
 from carp_spec.polish_rules import last_round
 from carp_spec.requests import about_stops, further_stops, require_tick, sound_solution
-from carp_spec.rule import DESIGN
 from carp_spec.shapes import require_shape
 from carproof.engines import compile_what_is_kept, engine_named, fleet_of
 from carproof.execution.delays import until
-from carproof.input_rules import Code
 from carproof.judging.audit import Audit, audit_in_order, in_order
 
 if TYPE_CHECKING:
     from carp_optimized.fleet import PlannedFleet
-    from carp_optimized.jit.kinds import Ints
+
+from carproof.api.fleet_memory import Change, Known
+from carproof.api.fleet_rules import (
+    FEW_ROBOTS,
+    MOST_ROBOTS,
+    MOST_STOPS,
+    MOST_VISITS,
+    NOT_BACK,
+    OWN_ROBOTS,
+    require_new,
+    require_own,
+    require_time,
+)
 
 T = TypeVar("T")
 NOBODY: Mapping[RobotId, Robot] = MappingProxyType({})
-MOST_ROBOTS = 10_000
-MOST_STOPS = 64
-MOST_VISITS = 4_000_000
-NOT_BACK = Code(
-    "fleet/now",
-    "News for a fleet have no earlier tick than those before, and a robot to add is released no earlier than its news. "
-    "A trace keeps what traces before it told of the robots that they named.",
-    DESIGN,
-)
-OWN_ROBOTS = Code(
-    "fleet/robot",
-    "A robot to add has an id that no robot of the fleet has; one that gets stops or is removed is in the fleet, "
-    "and so are those of a trace.",
-    DESIGN,
-)
-FEW_ROBOTS = Code(
-    "fleet/size",
-    f"A fleet has at most {MOST_ROBOTS} robots, each with at most {MOST_STOPS} stops. It gets no more robots and stops "
-    f"while its plans have more than {MOST_VISITS} visits. What is done counts until it is forgotten.",
-    DESIGN,
-)
-
-
-@dataclass(frozen=True, slots=True)
-class Change:
-    """What news changed: the plans that are new or other than before, and who is no longer in the fleet.
-
-    `unplanned` found no plan: those that were to be added are not in the fleet, and one that was to get stops keeps
-    those that it had. `left` are in the fleet no more: they were removed, or have vanished by the tick `now`, and by
-    the tick before it where following is forbidden. `audit` is the proof, if it was asked for.
-    """
-
-    now: int
-    columns: tuple[PlanColumns, ...]
-    unplanned: tuple[RobotId, ...]
-    left: tuple[RobotId, ...]
-    audit: Audit | None = None
-
-    @property
-    def plans(self) -> tuple[Plan, ...]:
-        """The plans that are new or other than before, made of their columns when they are asked for."""
-        return tuple(each.plan for each in self.columns)
-
-
-@dataclass(frozen=True, slots=True)
-class _Known:
-    """What a fleet knows: robots in the order of their arrival, their plans, and how many came so far.
-
-    `empty` is the instance without robots; `places` are the numbers of the robots in planning order, and `ids` the ids
-    by number. `numbers` say how many came before each robot. `told` is the tick of the last trace, -1 without one, and
-    `heard` that of the last trace which named a robot.
-    """
-
-    empty: Instance
-    now: int
-    robots: Mapping[RobotId, Robot]
-    plans: Mapping[RobotId, PlanColumns]
-    places: "Ints"
-    ids: Sequence[RobotId]
-    numbers: Mapping[RobotId, int]
-    count: int
-    told: int = -1
-    heard: Mapping[RobotId, int] = field(default_factory=dict)
-
-    def from_tick(self, now: int) -> int:
-        """The tick from which plans may change at the tick now: what a trace told of its tick has happened."""
-        return max(now, self.told + 1)
-
-    @property
-    def order(self) -> tuple[RobotId, ...]:
-        return tuple(self.ids[place] for place in self.places.tolist())
-
-    @property
-    def instance(self) -> Instance:
-        return replace(self.empty, robots=tuple(self.robots.values()))
-
-    @property
-    def solution(self) -> Solution:
-        return Solution(tuple(self.plans[id].plan for id in self.robots), self.order)
-
-    def rest(self) -> tuple[Instance, Solution]:
-        return self._of([self._ahead(*each) for each in self._since(self.now)])
-
-    def left(self) -> tuple[Instance, Solution]:
-        """Without the visits that are over before now; moves at now may be in the way of others."""
-        return self._of(self._since(self.now - 1))
-
-    def _of(self, each: Sequence[tuple[Robot, Plan]]) -> tuple[Instance, Solution]:
-        robots, plans = tuple(robot for robot, _ in each), tuple(plan for _, plan in each)
-        return replace(self.empty, robots=robots), Solution(plans, self.order)
-
-    def _since(self, tick: int) -> list[tuple[Robot, Plan]]:
-        """Each robot in the place where it is at a tick, released as it entered it, and its plan from there."""
-        found = []
-        for id, robot in self.robots.items():
-            plan = self.plans[id].plan
-            entered = sum(visit.enter <= tick for visit in plan.visits)
-            place = max(entered - 1, 0)
-            here = plan.visits[place]
-            stops = robot.stops[stops_served(robot.stops[:-1], plan.visits[:place]) :]
-            kept = replace(robot, start=here.resource, stops=stops, release=here.enter)
-            found.append((kept, replace(plan, visits=plan.visits[place:])))
-        return found
-
-    def _ahead(self, robot: Robot, plan: Plan) -> tuple[Robot, Plan]:
-        """The same, released so late that it cannot leave by now; of a service under way the rest is to do."""
-        here, *later = plan.visits
-        ticks = robot.pace * self.empty.graph.resource[here.resource].duration
-        release = max(here.enter, self.now + 1 - ticks)
-        if here.enter > self.now or (here.leave is not None and not later):
-            return robot, plan
-        stops = robot.stops
-        serves = here.leave is None or here.leave - here.enter >= stops[0].service
-        if serves and stops[0].resource == here.resource:
-            left = max(stops[0].service - (release - here.enter), 0)
-            stops = (replace(stops[0], service=left), *stops[1:])
-        visits = (structs.replace(here, enter=release), *later)
-        return replace(robot, stops=stops, release=release), replace(plan, visits=visits)
 
 
 class Fleet:
@@ -183,14 +72,14 @@ class Fleet:
         robots = {id: robot for id, robot in instance.robot.items() if id in by_robot}
         for place, robot in enumerate(instance.robots):
             if robot.id not in by_robot:
-                _require_time(robot, now, f"$.robots[{place}]")
+                require_time(robot, now, f"$.robots[{place}]")
         self._planner = planner
         empty = replace(instance, robots=())
         core = fleet_of(replace(instance, robots=tuple(robots.values())), [by_robot[id] for id in sound.order])
         self._core: PlannedFleet | None = core
         numbers = {id: number for number, id in enumerate(robots)}
         plans = {id: PlanColumns.of(plan) for id, plan in by_robot.items()}
-        self._known = _Known(empty, now, robots, plans, *core.places, numbers, len(robots))
+        self._known = Known(empty, now, robots, plans, *core.places, numbers, len(robots))
         self.opening = self.add(*(each for each in instance.robots if each.id not in by_robot), now=now, audit=audit)
 
     @property
@@ -223,17 +112,20 @@ class Fleet:
         and for numbers or fleets that are too large.
         """
         now = self._tick(now)
-        self._require_new(robots, now)
-        size = len(self._known.robots) + len(robots)
-        if size > MOST_ROBOTS and size - len(self._made().ended(now)) > MOST_ROBOTS:
-            message = f"the fleet must have at most {MOST_ROBOTS} robots, and would have more"
-            raise Refusal("limit", "$.robots", FEW_ROBOTS.id, message)
         if robots:
+            require_new(robots, self._known.empty, self._known.robots, now)
+            self._made().require_robots(robots)
+            size = len(self._known.robots) + len(robots)
+            if size > MOST_ROBOTS and size - len(self._made().ended(now)) > MOST_ROBOTS:
+                message = f"the fleet must have at most {MOST_ROBOTS} robots, and would have more"
+                raise Refusal("limit", "$.robots", FEW_ROBOTS.id, message)
             self._require_little("$.robots", max(len(robot.stops) for robot in robots))
+        from carp_optimized.adding import add  # noqa: PLC0415 - planners are loaded when needed
+
         core, unplanned = self._taken(), list[RobotId]()
         for number, robot in enumerate(robots, self._known.count):
             place = core.enlist(robot)
-            if not core.add(place, self._known.from_tick(now), self._planner, number):
+            if not add(core, place, self._known.from_tick(now), self._planner, number):
                 unplanned.extend(core.dismiss([place]))
         return self._take_over(core, now, audit, unplanned, {robot.id: robot for robot in robots})
 
@@ -244,6 +136,8 @@ class Fleet:
         was. Raises `Refusal` for a tick that has passed, a robot that is not there or has left by then, for stops that
         break `instance/stops`, and for numbers or fleets that are too large.
         """
+        from carp_optimized.adding import assign  # noqa: PLC0415 - planners are loaded when needed
+
         now = self._tick(now)
         require_shape(robot, RobotId, "$.robot")
         before, at = self._known.robots.get(robot), self._known.from_tick(now)
@@ -255,7 +149,7 @@ class Fleet:
             self._made().require_robots((further,))
         self._require_little("$.stops", len(further.stops))
         core, plan = self._taken(), self._known.plans[robot].plan
-        if core.assign(further, before, plan, at, self._planner, self._known.numbers[robot]):
+        if assign(core, further, before, plan, at, self._planner, self._known.numbers[robot]):
             return self._take_over(core, now, audit, new={robot: further})
         return self._take_over(core, now, audit, unplanned=[robot])
 
@@ -266,7 +160,7 @@ class Fleet:
         robot that is not there.
         """
         now = self._tick(now)
-        self._require_known(robot, "$.robot")
+        require_own(robot, self._known.robots, "$.robot")
         change = self.advance(now)
         if robot in change.left:
             return change
@@ -309,7 +203,7 @@ class Fleet:
         require_shape(trace, Trace)
         now = self._tick(trace.now)
         for place, plan in enumerate(trace.plans):
-            self._require_known(plan.robot, f"$.plans[{place}].robot")
+            require_own(plan.robot, self._known.robots, f"$.plans[{place}].robot")
         compile_what_is_kept()
         from carp_optimized.execution.following import held_up, retime  # noqa: PLC0415 - numba is slow to load
 
@@ -319,7 +213,7 @@ class Fleet:
         whole = Trace(now, (*trace.plans, *until(Trace(now, others), now).plans))
         try:
             after = retime(instance, solution, whole)
-            self._require_heard(whole)
+            self._known.require_heard(whole)
         except Refusal as refusal:
             if refusal.path not in {f"$.plans[{place}]" for place in range(len(trace.plans), len(whole.plans))}:
                 raise
@@ -338,7 +232,7 @@ class Fleet:
 
         Draws are among the robots of the fleet, in the order of their places in memory.
         """
-        from carp_optimized.planners import polish_fleet  # noqa: PLC0415 - planners are loaded when needed
+        from carp_optimized.polishing import polish_fleet  # noqa: PLC0415 - planners are loaded when needed
 
         started = perf_counter()
         require_polish_options(iterations, seconds, seed)
@@ -360,45 +254,6 @@ class Fleet:
 
         refuse_tick("$.now", now)
         return now
-
-    def _require_known(self, robot: RobotId, path: str) -> None:
-        require_shape(robot, RobotId, path)
-        if robot not in self._known.robots:
-            message = f"it must be a robot of the fleet, which has no {robot!r}"
-            raise Refusal("request", path, OWN_ROBOTS.id, message)
-
-    def _require_new(self, robots: tuple[Robot, ...], now: int) -> None:
-        if not robots:
-            return
-        places = self._known.empty.graph.index
-        if len(robots) != 1 or not _is_right(robots[0], places):
-            require_shape(robots, tuple[Robot, ...], "$.robots")
-            alone = replace(self._known.empty, robots=robots)
-            for rule in ROBOT_RULES:
-                for fault in rule(alone):
-                    raise Refusal("document", fault.path, fault.rule, fault.message)
-        self._made().require_robots(robots)
-        for place, robot in enumerate(robots):
-            path = f"$.robots[{place}]"
-            if robot.id in self._known.robots:
-                message = f"the id must be new to the fleet, which has a robot {robot.id!r}"
-                raise Refusal("request", f"{path}.id", OWN_ROBOTS.id, message)
-            _require_time(robot, now, path)
-
-    def _require_heard(self, whole: Trace) -> None:
-        """Raise `Refusal` where a trace of all robots contradicts an earlier one that named the robot."""
-        for number, plan in enumerate(whole.plans):
-            heard = self._known.heard.get(plan.robot)
-            if heard is None:
-                continue
-            both = Trace(heard, (self._known.plans[plan.robot].plan, plan))
-            before, again = (each.visits for each in until(both, heard).plans)
-            for old, new in zip(before, again, strict=False):  # who has gone less far has not left the last visit
-                if old != new:
-                    left = "not left it" if old.leave is None else f"left it at {old.leave}"
-                    had = f"had entered {old.resource} at {old.enter} and {left}"
-                    message = f"a trace has told that by {heard} robot {plan.robot} {had}"
-                    raise Refusal("request", f"$.plans[{number}]", NOT_BACK.id, message)
 
     def _require_little(self, path: str, stops: int) -> None:
         if stops > MOST_STOPS:
@@ -446,7 +301,7 @@ class Fleet:
             plans.pop(id, None)
         heard = {id: tick for id, tick in known.heard.items() if id in robots}
         last = known.told if told is None else now
-        after = _Known(known.empty, now, robots, plans, *core.places, numbers, known.count + len(come), last, heard)
+        after = Known(known.empty, now, robots, plans, *core.places, numbers, known.count + len(come), last, heard)
         found = _audited(known.solution.plans if told is None else told, after, changed) if audit else None
         self._known, self._core = after, core
         return Change(now, changed, tuple(unplanned), left, found)
@@ -456,26 +311,8 @@ def _without(robot: RobotId, of: Mapping[RobotId, T]) -> Mapping[RobotId, T]:
     return {id: value for id, value in of.items() if id != robot}
 
 
-def _audited(before: Sequence[Plan], known: _Known, changed: Sequence[PlanColumns]) -> Audit:
+def _audited(before: Sequence[Plan], known: Known, changed: Sequence[PlanColumns]) -> Audit:
     sound, engine = sound_solution(known.instance, known.solution), engine_named("optimized")
     plans = {plan.robot: plan for plan in before}
     followed = {each.robot: plans.get(each.robot) for each in changed}
     return audit_in_order(known.instance, sound, engine, followed=followed, now=known.from_tick(known.now))
-
-
-def _is_right(robot: Robot, places: Container[ResourceId]) -> bool:
-    """Whether it is seen quickly that a robot with one stop has the right types and keeps the rules of robots."""
-    if type(robot) is not Robot or type(robot.stops) is not tuple or [*map(type, robot.stops)] != [Stop]:
-        return False
-    stop = robot.stops[0]
-    names, numbers = (robot.id, robot.start, stop.resource), (robot.release, robot.pace, stop.service)
-    if not ({*map(type, names)} <= {str, int} and {*map(type, numbers)} == {int}):
-        return False
-    is_there = robot.start in places and stop.resource in places
-    return is_there and robot.release >= 0 and robot.pace >= 1 and stop.service >= 0
-
-
-def _require_time(robot: Robot, now: int, path: str) -> None:
-    if robot.release < now:
-        message = f"the release must be at least {now}, the tick at which it is added, and is {robot.release}"
-        raise Refusal("request", f"{path}.release", NOT_BACK.id, message)

@@ -13,7 +13,9 @@ from carp_spec.documents.solutions import PlanColumns, PlanDocument, SolutionDoc
 from carp_spec.execution.traces import Trace
 from carp_spec.requests import require_tick
 from carp_spec.rule import DESIGN
-from carproof.api.fleet import FEW_ROBOTS, NOT_BACK, OWN_ROBOTS, Change, Fleet
+from carproof.api.fleet import Fleet
+from carproof.api.fleet_memory import Change
+from carproof.api.fleet_rules import FEW_ROBOTS, NOT_BACK, OWN_ROBOTS
 from carproof.input_rules import Code
 from carproof.judging.documents import AuditDocument, audit_document
 from carproof.protocol.ops.op import PolishOptions, Session
