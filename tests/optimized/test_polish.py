@@ -199,5 +199,5 @@ def test_rounds_add_up_however_many_a_compiled_call_plays(monkeypatch: pytest.Mo
     instance = grid_instance(Grid(10, 10), Fleet(robots=30, seed=5))
     given = carp_optimized.plan(instance, Carp())
     polished = carp_optimized.polish(instance, given, iterations=333, seed=9)
-    monkeypatch.setattr("carp_optimized.planners.ROUNDS", 7)
+    monkeypatch.setattr("carp_optimized.polishing.ROUNDS", 7)
     assert carp_optimized.polish(instance, given, iterations=333, seed=9) == polished

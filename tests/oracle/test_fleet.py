@@ -457,24 +457,28 @@ def assert_alike(fleet: Fleet, twin: Fleet) -> None:
 
 
 @pytest.mark.parametrize(
-    "place", [*(f"PlannedFleet.{name}" for name in ("add", "changed", "dismiss", "enlist", "replan")), "audit_in_order"]
+    "place",
+    [
+        *(f"carp_optimized.fleet.PlannedFleet.{name}" for name in ("changed", "dismiss", "enlist", "replan")),
+        "carp_optimized.adding.add",
+        "carproof.api.fleet.audit_in_order",
+    ],
 )
 def test_a_failure_in_the_middle_changes_nothing(monkeypatch: pytest.MonkeyPatch, place: str) -> None:
     fleet, twin = Fleet(row()), Fleet(row())
-    where = f"{'carp_optimized' if '.' in place else 'carproof.api'}.fleet.{place}"
-    real = resolve_name(where)
+    real = resolve_name(place)
 
     def failing(*arguments: object, **named: object) -> None:
         real(*arguments, **named)
         raise MemoryError
 
     def tell(fleet: Fleet) -> None:
-        if place == "PlannedFleet.replan":
+        if place.endswith("replan"):
             fleet.trace(Trace(2, (Plan("x", (Visit("b", 0, 1), Visit("c", 1, None))),)))
         else:
             fleet.add(Robot("v", "h", "a", release=1), Robot("u", "b", "c", release=8), now=1, audit=True)
 
-    monkeypatch.setattr(where, failing)
+    monkeypatch.setattr(place, failing)
     with pytest.raises(MemoryError):
         tell(fleet)
     monkeypatch.undo()
