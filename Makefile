@@ -49,10 +49,12 @@ docs: install
 quick: install
 	$(MAKE) --jobs 2 lint quick-tests
 
-QUICK := tests/spec tests/reference tests/optimized/test_limits.py tests/optimized/test_sorting.py \
-    tests/verify/test_certificate.py tests/verify/test_encoding.py tests/verify/test_evidence.py tests/verify/test_joint_search.py \
-    tests/oracle/test_rules.py tests/oracle/test_generate.py tests/oracle/test_networkx_graphs.py tests/oracle/test_view.py \
-    tests/experiments/test_statistics.py tests/experiments/test_page.py tests/test_house.py tests/test_programs.py tests/test_surface.py
+QUICK := tests/spec tests/reference tests/optimized/test_limits.py tests/optimized/neighbourhood/test_sorting.py \
+    tests/verify/test_certificate.py tests/verify/lemmas/test_evidence.py \
+    $(addprefix tests/verify/optimum/test_,encoding.py joint_search.py) \
+    $(addprefix tests/oracle/,judging/test_rules.py generate formats/test_networkx_graphs.py viewer/test_view.py) \
+    tests/experiments/test_statistics.py tests/experiments/test_page.py tests/test_frozen.py tests/test_house.py tests/test_programs.py \
+    tests/test_surface.py
 
 quick-tests: install
 	HYPOTHESIS_PROFILE=quick $(BIN)/pytest -q -m 'not nightly and not ci' $(QUICK)
@@ -148,13 +150,14 @@ conform: install
 
 # When `carproof conform` finds bugs that show only beyond a size or a number: the table of docs/results/conform.md.
 planted: compiled
-	nice $(BIN)/python -m tests.oracle.planted
+	nice $(BIN)/python -m tests.oracle.conform.asking.planted
 
 # Every line and branch of the specification and the reference, by their own tests, the vectors, and the tests of what commands, ops and
 # public functions refuse; then of the compiled planner, run uncompiled, without the tests that start processes of their own or take long
 # that way.
-SPECIFIED := tests/spec tests/reference $(addprefix tests/verify/test_,vectors.py documents.py query_certificate.py) \
-    $(addprefix tests/oracle/test_,assign.py malformed_values.py ops.py public_face.py refusals.py schema.py)
+SPECIFIED := tests/spec tests/reference tests/verify/query $(addprefix tests/verify/test_,vectors.py documents.py) \
+    $(addprefix tests/oracle/api/test_,assign.py malformed_values.py public_face.py) \
+    tests/oracle/entry/test_refusals.py $(addprefix tests/oracle/protocol/test_,ops.py schema.py)
 
 coverage: install
 	$(BIN)/pytest -m 'not nightly and not ci' --cov --cov-fail-under=100 $(SPECIFIED)
@@ -183,12 +186,12 @@ kernel:
 
 # Plant errors in the kernel's definitions; each must break a proof.
 kernel-mutants: kernel
-	$(PYTHON) -m tests.verify.kernel_mutants
+	$(PYTHON) -m tests.verify.kernel.mutants
 
 # Break the kernel's driver in one place after the other, and list what no test notices: hours.
-# tests/verify/kernel_driver_survivors.md explains what is left.
+# tests/verify/kernel/driver_survivors.md explains what is left.
 kernel-driver-mutants: install kernel
-	nice $(BIN)/python -m tests.verify.kernel_driver_mutants
+	nice $(BIN)/python -m tests.verify.kernel.driver_mutants
 
 clean:
 	rm -rf .venv build/kernel

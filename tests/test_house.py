@@ -105,6 +105,11 @@ def test_a_folder_holds_few_modules_and_says_its_one_idea() -> None:
         assert ast.get_docstring(ast.parse((folder / "__init__.py").read_text())), folder
 
 
+def test_a_folder_of_tests_holds_few_modules() -> None:
+    sizes = Counter(file.parent for file in (ROOT / "tests").rglob("*.py"))
+    assert [str(folder) for folder, size in sizes.items() if size > MOST_MODULES] == []
+
+
 def test_what_must_be_trusted_imports_nothing_of_the_command_line() -> None:
     """The trusted judge: the law, the checkers, and what of the public face calls a verdict."""
     trusted = [name for name in modules() if name.startswith(("carp_spec", "carp_verify", "carproof.judging"))]

@@ -23,80 +23,93 @@ from _pytest.runner import runtestprotocol
 from tests.mutation.forking import ROOT, Case, chosen, outcome, run_mutants
 from tests.mutation.mutants import Mutant, mutants
 
-PIN = "verify/test_kept_formulas"
-SEARCH = ("verify/test_joint_search", "verify/test_unsolvable")
-FORMULAS = ("verify/test_encoding", PIN)
+PIN = "verify/optimum/test_kept_formulas"
+SEARCH = ("verify/optimum/test_joint_search", "verify/optimum/test_unsolvable")
+FORMULAS = ("verify/optimum/test_encoding", PIN)
 BOUNDS = (
-    "verify/test_bound",
-    "verify/test_bound_groups",
-    "verify/test_formulas_of_sights",
-    "verify/test_bound_refusals",
-    "verify/test_bound_seen",
+    "verify/bound/test_bound",
+    "verify/bound/test_groups",
+    "verify/bound/test_formulas_of_sights",
+    "verify/bound/test_refusals",
+    "verify/bound/test_seen",
     "verify/test_forgery",
 )
-QUERIES = ("verify/test_query_certificate", "verify/test_forgery", "verify/test_vectors", "oracle/test_audit")
-ANSWERS = ("oracle/test_conform_one_answer",)
-REPORT = ("oracle/test_conform_report", *ANSWERS)
-FOOTPRINTS = ("oracle/test_footprint_check", "oracle/test_footprints", "oracle/test_footprints_in_cells")
-OUTCOMES = ("oracle/test_conform_outcome",)
-LEMMAS = ("verify/test_lemmas", "verify/test_formulas")
+QUERIES = (
+    "verify/query/test_query_certificate",
+    "verify/test_forgery",
+    "verify/test_vectors",
+    "oracle/judging/test_audit",
+)
+ANSWERS = ("oracle/conform/judging/test_one_answer",)
+REPORT = ("oracle/conform/reporting/test_report", *ANSWERS)
+FOOTPRINTS = (
+    "oracle/layouts/test_footprint_check",
+    "oracle/layouts/test_footprints",
+    "oracle/layouts/test_footprints_in_cells",
+)
+OUTCOMES = ("oracle/conform/judging/test_outcome",)
+LEMMAS = ("verify/lemmas/test_lemmas", "verify/lemmas/test_formulas")
 TESTS: Mapping[str, Sequence[str]] = {
     "carp_verify.bound.verify": BOUNDS,
-    "carp_verify.bound.least": (*BOUNDS, "verify/test_bound_stops"),
-    "carp_verify.bound.network": (*BOUNDS, "verify/test_bound_stops"),
+    "carp_verify.bound.least": (*BOUNDS, "verify/bound/test_stops"),
+    "carp_verify.bound.network": (*BOUNDS, "verify/bound/test_stops"),
     "carp_verify.bound.tariff": BOUNDS,
-    "carp_verify.bound.rules": (*BOUNDS, "verify/test_gap", "oracle/test_bound"),
+    "carp_verify.bound.rules": (*BOUNDS, "verify/optimum/test_gap", "oracle/api/test_bound"),
     "carp_verify.bound.cuts": BOUNDS,
-    "carp_verify.optimum.refutation": ("verify/test_refutation", "verify/test_forgery"),
+    "carp_verify.optimum.refutation": ("verify/optimum/test_refutation", "verify/test_forgery"),
     "carp_verify.optimum.proof": (
-        "verify/test_proof",
+        "verify/optimum/test_proof",
         PIN,
         "verify/test_forgery",
-        "verify/test_unsolvable",
-        "oracle/test_optimum",
+        "verify/optimum/test_unsolvable",
+        "oracle/api/test_optimum",
     ),
-    "carp_verify.optimum.unsolvable": ("verify/test_unsolvable", "verify/test_optimum"),
+    "carp_verify.optimum.unsolvable": ("verify/optimum/test_unsolvable", "verify/optimum/test_optimum"),
     "carp_verify.certificate": ("verify/test_certificate",),
     "carp_verify.lemmas.smt": (*LEMMAS, "verify/test_certificate"),
-    "carp_verify.lemmas.engine": ("verify/test_lemmas",),
+    "carp_verify.lemmas.engine": ("verify/lemmas/test_lemmas",),
     "carp_verify.lemmas.vocabulary": LEMMAS,
     "carp_verify.lemmas.derivation": LEMMAS,
     "carp_verify.footprint.apart": FOOTPRINTS,
     "carp_verify.footprint.cells": FOOTPRINTS,
     "carp_verify.footprint.floor": FOOTPRINTS,
     "carp_verify.footprint.meeting": ("verify/test_footprint_meeting", *FOOTPRINTS),
-    "carproof.layouts.footprint": ("oracle/test_footprint_check", "oracle/test_footprints"),
-    "carproof.layouts.turning": ("oracle/test_footprints", "oracle/test_layouts"),
-    "carp_verify.kernel": ("verify/test_asking_the_kernel",),
+    "carproof.layouts.footprint": ("oracle/layouts/test_footprint_check", "oracle/layouts/test_footprints"),
+    "carproof.layouts.turning": ("oracle/layouts/test_footprints", "oracle/layouts/test_layouts"),
+    "carp_verify.kernel": ("verify/kernel/test_asking",),
     "carp_verify.query.verify": QUERIES,
     "carp_verify.query.rules": QUERIES,
     "carp_verify.optimum.joint_search": SEARCH,
-    "carp_verify.optimum.rules": ("verify/test_proof", "verify/test_unsolvable", "verify/test_joint_search"),
+    "carp_verify.optimum.rules": (
+        "verify/optimum/test_proof",
+        "verify/optimum/test_unsolvable",
+        "verify/optimum/test_joint_search",
+    ),
     "carp_verify.optimum.clauses": FORMULAS,
     "carp_verify.optimum.encoding": FORMULAS,
     "carp_verify.optimum.robot_clauses": FORMULAS,
     "carproof.conform.judging.judges": ANSWERS,
     "carproof.conform.judging.optimum": ANSWERS,
     "carproof.conform.judging.gave_up": ANSWERS,
-    "carproof.conform.answers": ("oracle/test_conform_replies",),
+    "carproof.conform.answers": ("oracle/conform/programs/test_replies",),
     "carproof.conform.levels": REPORT,
     "carproof.conform.judging.deciding": REPORT,
-    "carproof.conform.run": (*REPORT, "oracle/test_conform_saving"),
+    "carproof.conform.run": (*REPORT, "oracle/conform/reporting/test_saving"),
     "carproof.conform.judging.outcome": OUTCOMES,
     "carproof.conform.programs.function": OUTCOMES,
     "carproof.conform.findings": (
-        "oracle/test_conform_report",
-        "oracle/test_conform_one_answer",
-        "oracle/test_conform_replies",
-        "oracle/test_conform_executor",
-        "oracle/test_conform_hostile",
+        "oracle/conform/reporting/test_report",
+        "oracle/conform/judging/test_one_answer",
+        "oracle/conform/programs/test_replies",
+        "oracle/conform/programs/test_executors",
+        "oracle/conform/programs/test_hostile",
     ),
-    "carproof.conform.judging.claims": ("oracle/test_conform_claims",),
-    "carproof.conform.judging.by_kernel": ("oracle/test_conform_kernel",),
-    "carproof.conform.shrinking": ("oracle/test_conform_shrinking",),
-    "carproof.conform.smaller": ("oracle/test_conform_large",),
-    "carproof.conform.asking.ladder": ("oracle/test_conform_large",),
-    "carproof.conform.judging.driving": ("oracle/test_conform_executor",),
+    "carproof.conform.judging.claims": ("oracle/conform/asking/test_claims",),
+    "carproof.conform.judging.by_kernel": ("oracle/conform/judging/test_kernel",),
+    "carproof.conform.shrinking": ("oracle/conform/asking/test_shrinking",),
+    "carproof.conform.smaller": ("oracle/conform/asking/test_large",),
+    "carproof.conform.asking.ladder": ("oracle/conform/asking/test_large",),
+    "carproof.conform.judging.driving": ("oracle/conform/programs/test_executors",),
 }
 TINY = 80
 """The number of instances of test_tiny_optima.py, one by one, for modules that make or check formulas."""
@@ -186,7 +199,7 @@ class Tests:
 
 def tiny_cases() -> list[Case]:
     """The search for optima and both formulas, beside the joint search."""
-    from tests.verify.test_tiny_optima import faults
+    from tests.verify.optimum.test_tiny_optima import faults
 
     def ask(number: int) -> int:
         assert not list(faults(number))

@@ -1,9 +1,9 @@
 """Mutants of the compiled planner, run uncompiled, each in a process forked from one that has loaded all but it.
 
 `python -m tests.mutation.planner` lists the mutants that no check notices; with names of modules, of these alone, and
-with a name and lines, `windows:89:91`, of these lines alone. The checks are those of tests/optimized that fit into a
-few seconds: random small questions and fleets to which robots are added, whose answers by the reference are known
-before the first fork; test_replanning.py, test_reasons.py, test_reuse.py and test_adding.py. Beside a mutant that
+with a name and lines, `queries.search:89:91`, of these lines alone. The checks are those of tests/optimized that fit
+into a few seconds: random small questions and fleets to which robots are added, whose answers by the reference are
+known before the first fork; test_replanning.py, test_reasons.py, test_reuse.py and test_adding.py. Beside a mutant that
 survives stands how many queries it asks of the fleets, where it asks other ones: more cost time alone, fewer want a
 reason. Starting pytest and numba for each mutant would take ten times as long.
 """
@@ -28,7 +28,7 @@ import pytest
 import tests.conftest  # noqa: F401 - the profile
 from tests.mutation.forking import ROOT, Case, Changed, chosen, outcome, run_mutants
 from tests.mutation.mutants import Mutant, mutants
-from tests.optimized.arrivals import CROWDED, ROOMS, Arrivals, arrivals, convoy, scaled
+from tests.optimized.neighbourhood.arrivals import CROWDED, ROOMS, Arrivals, arrivals, convoy, scaled
 
 import carp_reference
 from carp_spec import Instance, Neighbourhood, Planner, Solution
@@ -43,8 +43,12 @@ MODULES = (
     "neighbourhood.adding",
     "neighbourhood.orders",
     "neighbourhood.distances",
+    "draws",
     "passes",
-    "queries.windows",
+    "windows.rows",
+    "windows.sweeps",
+    "windows.reserving",
+    "windows.fitting",
     "queries.guides",
     "queries.search",
 )
@@ -56,12 +60,12 @@ TEST_SECONDS = 30
 KINDS = ("kept", "unchanged", "prefixes", "shared", "bounds")
 CHOICES = list(product((True, False), repeat=len(KINDS)))
 TESTS: Mapping[str, str] = {
-    "test_replanned_robots": "",
-    "test_replanning": "",
-    "test_reasons": "",
-    "test_reuse": "beginning-4 every_query each_kind sampled_orders",
-    "test_adding": "law reserved",
-    "test_corners": "too_far_is_refused-1 guide_ends detour_longer",
+    "neighbourhood.test_replanned_robots": "",
+    "neighbourhood.test_replanning": "",
+    "queries.test_reasons": "",
+    "neighbourhood.test_reuse": "beginning-4 every_query each_kind sampled_orders",
+    "neighbourhood.test_adding": "law reserved",
+    "queries.test_corners": "too_far_is_refused-1 guide_ends detour_longer",
     "test_limits": "too_far largest_tick",
 }
 """Modules of tests/optimized, and words in names or parameters of their tests that take part; "" is all of them."""

@@ -25,16 +25,16 @@ MODULES = {
 }
 OPTIONS = ["-x", "-q", "-pno:cacheprovider", "-pno:xdist", "-pno:cov", "-k", "not every_small_query"]
 SECONDS = 60
-DOCUMENTS = ("spec/test_described_documents", "verify/test_documents", "oracle/test_schema")
+DOCUMENTS = ("spec/documents/test_described_documents", "verify/test_documents", "oracle/protocol/test_schema")
 ALSO = {
-    "carp_spec.check": ("spec/test_quick_check", "oracle/test_malformed_values"),
-    "carp_spec.instance_rules": ("spec/test_plan_rules", "oracle/test_assign"),
-    "carp_spec.plan_rules": ("spec/test_check", "verify/test_rules_as_properties"),
+    "carp_spec.check": ("spec/test_quick_check", "oracle/api/test_malformed_values"),
+    "carp_spec.instance_rules": ("spec/test_plan_rules", "oracle/api/test_assign"),
+    "carp_spec.plan_rules": ("spec/test_check", "verify/lemmas/test_rules_as_properties"),
     "carp_spec.joint_rules": ("spec/test_check",),
-    "carp_spec.query_rules": ("verify/test_rules_as_properties",),
+    "carp_spec.query_rules": ("verify/lemmas/test_rules_as_properties",),
     "carp_spec.rule": ("spec/test_check",),
-    "carp_spec.requests": ("oracle/test_assign",),
-    "carp_spec.execution.logs": ("oracle/test_check_log",),
+    "carp_spec.requests": ("oracle/api/test_assign",),
+    "carp_spec.execution.logs": ("oracle/execution/test_check_log",),
     "carp_spec.documents.fields": DOCUMENTS,
     "carp_spec.documents.instances": DOCUMENTS,
     "carp_spec.documents.solutions": DOCUMENTS,
@@ -46,9 +46,9 @@ ALSO = {
 
 def tests_of(name: str) -> Iterator[Path]:
     """The tests of the module's own name, of its rules, and those named; where it has none, all of its package's."""
-    package, *_, module = name.split(".")
+    package, *rooms, module = name.split(".")
     folder = ROOT / "tests" / package.removeprefix("carp_")
-    own, also = folder / f"test_{module}.py", ALSO.get(name, ())
+    own, also = folder.joinpath(*rooms, f"test_{module}.py"), ALSO.get(name, ())
     if own.exists():
         yield own
     elif not also:

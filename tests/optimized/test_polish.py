@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.optimized.arrivals import CROWDED, ROOMS, arrivals
+from tests.optimized.neighbourhood.arrivals import CROWDED, ROOMS, arrivals
 from tests.spec.making import worth
 
 import carp_optimized

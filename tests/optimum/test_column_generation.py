@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from tests.profiles import draws
-from tests.verify.tiny import TINY
+from tests.verify.optimum.tiny import TINY
 
 from carp_optimum.bound import SCALE
 from carp_optimum.lagrangian.column_generation import CLOSE, ColumnGeneration

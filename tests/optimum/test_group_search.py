@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given, settings
 from tests.optimum.test_branching import nothing
 from tests.profiles import draws
-from tests.verify.tiny import TINY
+from tests.verify.optimum.tiny import TINY
 
 from carp_optimized import plan
 from carp_optimized.improve.repair import repair

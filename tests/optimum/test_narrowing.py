@@ -11,7 +11,7 @@ from tests.optimum.test_branching import nothing
 from tests.optimum.test_priced_formula import town
 from tests.profiles import draws
 from tests.spec.making import grid
-from tests.verify.tiny import TINY
+from tests.verify.optimum.tiny import TINY
 
 import carproof
 from carp_optimized.improve.repair import repair

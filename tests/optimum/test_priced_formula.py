@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
-from tests.verify.bound_examples import completed, priced
-from tests.verify.models import model_of
-from tests.verify.tiny import TINY
+from tests.verify.bound.examples import completed, priced
+from tests.verify.optimum.models import model_of
+from tests.verify.optimum.tiny import TINY
 
 from carp_optimum.bound import lower_bound
 from carp_optimum.lagrangian.reduced_costs import PricedBound, ReducedCosts

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from tests.verify.bound_examples import completed, crossing, cut_certificate
+from tests.verify.bound.examples import completed, crossing, cut_certificate
 from tests.verify.forging import FAR, changed, changed_lines, verified_with
-from tests.verify.query_examples import QUESTIONS, fleets
-from tests.verify.test_proof import crossing as four_crossing
+from tests.verify.optimum.test_proof import crossing as four_crossing
+from tests.verify.query.examples import QUESTIONS, fleets
 
 from carp_optimum.bound import lower_bound
 from carp_optimum.optimum import optimum
