@@ -7,7 +7,7 @@ are as greedy as can be, and then less and less. If that is not much better than
 Where nothing ends, or LaCAM would take far too long, as many robots as possible are planned one after the other.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from math import inf
 
 import numpy as np
@@ -36,10 +36,13 @@ SURE, DOUBT = 64, 2
 """After so many steps of LaCAM it is known how long a step takes, but for a factor of `DOUBT`."""
 MISSES = 8
 """Prioritized planning gives up when robots have found no path this often, on average."""
-HOPE, MANY = 8, 8
-"""It gives up after one of `HOPE` parts of its time if it has missed more than one of `MANY` robots."""
-SOME, PATIENCE = 64, 3
-"""If a pass has missed at most one of `SOME` robots, so many times its time is for these. Else one may give up."""
+SOME, HOPE, PATIENCE = 64, 8, 2
+"""A pass that may give up does so if it has missed more than one of `SOME` robots, or would not end in time.
+
+The latter is known after one of `HOPE` parts of the time. Then so many times its own time is for those that it missed.
+"""
+FEW = 16
+"""Where at most one of so many robots waits for a path, way may be made until `GUIDED`."""
 EFFORT = 1000
 """The gaps that a query may look at, beside its way, before the robot takes a way through others, not far around.
 
@@ -53,8 +56,6 @@ LATE = 1 << 12
 """The ticks of delay for which there must be buckets beside the greed: without, all bounds share the last bucket."""
 JAMMED = 4
 """Other orders are tried where the shortest way first makes paths longer by more than one of so many parts."""
-NOISE = (2, 64, 1, 4, 2, 64)
-"""The most noise in the orders, in mean ways."""
 LARGE = 2000
 """With more robots there is no time for other orders."""
 LONGEST = 700
@@ -102,9 +103,9 @@ def _as_many_in_order(crowd: Crowd, timer: Clock, seed: int) -> Paths:
 
 def _best_in_order(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int) -> Paths:
     """The best paths of greedy passes of prioritized planning, or of a less greedy one, as far as there is time."""
-    ways = ways_of(crowd)
+    ways, any_order = ways_of(crowd), np.random.default_rng(seed).permutation(crowd.start.size).astype(np.int32)
     best, longest, effort = no_paths(ways.size, 1), 0.0, EFFORT
-    for keys in _orders(ways, seed):
+    for keys in (ways, any_order, -ways):
         if 0 < longest >= timer.left(SEARCHING):
             break
         began = timer.spent
@@ -137,19 +138,6 @@ def best_of_ladder(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: 
         if not found.size.all():
             break
     return best
-
-
-def _orders(ways: Ints, seed: int) -> Iterator[Ints]:
-    """Keys for orders of robots: the shortest way first, any order, the longest first, and the shortest with noise.
-
-    The shortest way first is the best order where that leads to few delays. Else robots that park early hold up others.
-    """
-    stream = np.random.default_rng(seed)
-    yield ways
-    yield stream.permutation(ways.size).astype(np.int32)
-    yield -ways
-    for most in NOISE:
-        yield ways + stream.integers(0, 1 + most * int(ways.mean()), ways.size, dtype=np.int32)
 
 
 def _less_greedy(crowd: Crowd, timer: Clock, by_steps: Sequence[Paths], seed: int, greedy: Paths, took: float) -> Paths:
@@ -203,7 +191,7 @@ def planned_in_order(
     is_part: bool = False,
     gives_up: bool = False,
 ) -> Paths:
-    """The paths of a pass of prioritized planning, and then of the robots that it missed, as long as they get fewer.
+    """The paths of a pass of prioritized planning, and then of the robots that it missed.
 
     If paths of a part of the robots are of use, time is left for the visits of those alone. A pass that `gives_up` does
     so soon if it misses some robots, or would not end in time if the work grows with the square of the robots planned:
@@ -214,34 +202,26 @@ def planned_in_order(
     improving = Improving(crowd, no_paths(robots, room), seed)
     begun, time = timer.spent, timer.seconds or inf
 
-    def goes_on(*, is_likely: bool) -> bool:
+    def goes_on(until: int = until) -> bool:
         if is_part:
             timer.reserve(int(improving.rounds.paths.size.sum()))
-        return timer.goes_on(until) and (is_likely or HOPE * (timer.spent - begun) < time)
+        return timer.goes_on(until)
 
-    def misses_few() -> bool:
-        if not gives_up:
-            return goes_on(is_likely=MANY * improving.missed <= robots)
+    def ends_well() -> bool:
         took = timer.spent - begun
         done = int(np.count_nonzero(improving.rounds.paths.size)) + improving.missed
-        is_likely = took * robots**2 < (took + timer.left(until)) * done**2
-        return SOME * improving.missed <= robots and goes_on(is_likely=is_likely)
+        is_in_time = HOPE * took < time or took * robots**2 < (took + timer.left(until)) * done**2
+        return SOME * improving.missed <= robots and is_in_time
 
     order = np.argsort(keys, kind="stable").astype(np.int32)
-    improving.plan_first(order, misses_few, greed, effort)
-    missing = int(np.count_nonzero(improving.rounds.paths.size == 0))
-    misses_some = SOME * missing > robots
-    if gives_up and misses_some:
+    improving.plan_first(order, (lambda: goes_on() and ends_well()) if gives_up else goes_on, greed, effort)
+    if gives_up and not ends_well():
         return improving.rounds.paths
     last = improving.missed + MISSES * robots
-    patient = timer.spent if misses_some else begun + PATIENCE * (timer.spent - begun)
-    half, halved, halving = missing, begun, 0.0
+    patient = timer.spent + PATIENCE * (timer.spent - begun) if gives_up else inf
 
-    def gets_fewer(waiting: int) -> bool:
-        nonlocal half, halved, halving
-        if 2 * waiting <= half:
-            half, halved, halving = waiting, timer.spent, timer.spent - halved
-        is_soon = waiting.bit_length() * max(halving, timer.spent - halved) < 2 * timer.left()
-        return improving.missed < last and goes_on(is_likely=is_soon or timer.spent < patient)
+    def goes_on_for(waiting: int) -> bool:
+        ends = max(until, GUIDED) if FEW * waiting <= robots else until
+        return improving.missed < last and timer.spent < patient and goes_on(ends)
 
-    return improving.make_way(gets_fewer)
+    return improving.make_way(goes_on_for)

@@ -6,6 +6,7 @@ from itertools import count
 from time import process_time
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from tests.optimized.crowds.measuring import measured, on_grid
@@ -92,6 +93,21 @@ def test_less_and_less_greed_ends_with_better_plans_than_the_greediest_pass() ->
     best = first_paths.best_of_ladder(found, always, [], 0)
     assert best.size.all()
     assert arrivals(best).sum() < arrivals(first).sum()
+
+
+def test_a_pass_gives_up_where_it_misses_more_than_a_few_robots() -> None:
+    crowd = measured(on_grid(20, 250))
+    always = Clock(None, process_time, 0.0)
+
+    def missed(*, gives_up: bool) -> int:
+        greediest = max(first_paths.LADDER)
+        paths = first_paths.planned_in_order(
+            crowd, always, 0, ALL, greediest, UNTIL_FOUND, ways_of(crowd), gives_up=gives_up
+        )
+        return int(np.count_nonzero(paths.size == 0))
+
+    assert missed(gives_up=False) == 0
+    assert missed(gives_up=True) > 10
 
 
 def test_a_way_through_others_has_room_for_more_visits_than_the_longest_way(monkeypatch: pytest.MonkeyPatch) -> None:
