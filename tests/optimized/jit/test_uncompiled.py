@@ -12,7 +12,12 @@ from carp_experiments.measuring.crosscheck import first_difference
 from carp_spec import Instance, Planner, Solution
 
 ROOT = Path(__file__).parents[3]
-UNCOMPILED = ("test_replanning", "test_reasons", "test_sorting", "test_adding")
+UNCOMPILED = (
+    "neighbourhood/test_replanning",
+    "neighbourhood/test_sorting",
+    "neighbourhood/test_adding",
+    "queries/test_reasons",
+)
 CROSSCHECK = "from carp_experiments.measuring.crosscheck import first_difference; print(first_difference({}, seed=3))"
 BEYOND = """
 from carp_optimized import passes
