@@ -149,8 +149,9 @@ def ask(plan: Callable[..., Solution], add: Callable[..., Solution], subject: ob
 
 def load(module: str, source: str) -> None:
     """Load the planner again, with another source of one module; "" is its own. Guides end where they can."""
-    for name in [name for name in sys.modules if name.startswith(("carp_optimized", "tests.optimized.test_"))]:
-        del sys.modules[name]
+    for name in [*sys.modules]:
+        if name.startswith("carp_optimized") or (name.startswith("tests.optimized.") and ".test_" in name):
+            del sys.modules[name]
     if source:
         sys.meta_path.insert(0, Changed(f"carp_optimized.{module}", source_of(module), source))
     import_module("carp_optimized.state.room").DETOUR = 0  # type: ignore[attr-defined]
