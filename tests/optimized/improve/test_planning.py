@@ -97,17 +97,17 @@ def test_less_and_less_greed_ends_with_better_plans_than_the_greediest_pass() ->
 
 def test_a_pass_gives_up_where_it_misses_more_than_a_few_robots() -> None:
     crowd = measured(on_grid(20, 250))
-    always = Clock(None, process_time, 0.0)
+    still = Clock(None, lambda: 0.0, 0.0)
 
     def missed(*, gives_up: bool) -> int:
         greediest = max(first_paths.LADDER)
         paths = first_paths.planned_in_order(
-            crowd, always, 0, ALL, greediest, UNTIL_FOUND, ways_of(crowd), gives_up=gives_up
+            crowd, still, 0, ALL, greediest, UNTIL_FOUND, ways_of(crowd), gives_up=gives_up
         )
         return int(np.count_nonzero(paths.size == 0))
 
     assert missed(gives_up=False) == 0
-    assert missed(gives_up=True) > 10
+    assert missed(gives_up=True) > 90
 
 
 def test_a_way_through_others_has_room_for_more_visits_than_the_longest_way(monkeypatch: pytest.MonkeyPatch) -> None:
