@@ -22,8 +22,9 @@ def fixed_paths(fleet: PlannedFleet, options: FixedPaths) -> None:
     """Plan all robots in the order given, as if there were no plans yet, each on the best of a few paths."""
     refuse_stops(fleet.instance)
     fleet.clear()
+    moves = PathMoves(fleet)
     for robot in range(fleet.held.size):
-        add_on_path(fleet, robot, paths_of(fleet, robot, options))
+        moves.add(robot, paths_of(fleet, robot, options))
 
 
 def paths_of(fleet: PlannedFleet, robot: int, options: FixedPaths) -> list[Path]:
@@ -31,23 +32,6 @@ def paths_of(fleet: PlannedFleet, robot: int, options: FixedPaths) -> list[Path]
     start, goal = int(fleet.state.robots.start[robot]), int(fleet.state.robots.goal[robot])
     choose = shortest_paths if options.paths == "shortest" else disjoint_paths
     return fleet.call(lambda: choose(fleet.native, start, goal, options.k))
-
-
-def add_on_path(fleet: PlannedFleet, robot: int, paths: Sequence[Path]) -> bool:
-    """Add a robot on the path on which it arrives first, the first of equals; whether it has a plan on any."""
-    fleet.forget_old_records()
-
-    def attempt() -> list[int]:
-        passes.reach_from_everywhere(fleet.native, robot)
-        moves = PathMoves(fleet.state)
-        return [passes.find_one(moves.along(path), robot, NONE, 0, ALONE) for path in paths]
-
-    found = [record for record in fleet.call(attempt) if record != NONE]
-    if not found:
-        return False
-    best = np.array([min(found, key=lambda record: int(fleet.state.records.arrival[record]))], np.int32)
-    fleet.reserve(np.array([robot], np.int32), best)
-    return True
 
 
 def shortest_paths(native: Native[State], start: int, goal: int, k: int) -> list[Path]:
@@ -91,21 +75,45 @@ def disjoint_paths(native: Native[State], start: int, goal: int, k: int) -> list
 
 
 class PathMoves:
-    """The arrays of a fleet with the moves of a path in place of its graph's."""
+    """Adds robots to a fleet on paths: queries see the moves of a path in place of the graph's."""
 
-    def __init__(self, state: State) -> None:
-        """Begin without moves; all other arrays are those of the fleet."""
-        first, target = np.zeros_like(state.graph.first), np.full_like(state.graph.target, NONE)
-        graph = state.graph._replace(first=first, target=target)
-        self.native = Native(state._replace(graph=graph))
+    def __init__(self, fleet: PlannedFleet) -> None:
+        """Begin with the arrays that the fleet has."""
+        self._fleet = fleet
+        self._take()
 
-    def along(self, path: Path) -> Native[State]:
+    def _take(self) -> None:
+        """Take the fleet's arrays, but without moves."""
+        self._state = self._fleet.state
+        graph = self._state.graph
+        first, target = np.zeros_like(graph.first), np.full_like(graph.target, NONE)
+        self._native = Native(self._state._replace(graph=graph._replace(first=first, target=target)))
+
+    def add(self, robot: int, paths: Sequence[Path]) -> bool:
+        """Add a robot on the path on which it arrives first, the first of equals; whether it has a plan on any."""
+        fleet = self._fleet
+        fleet.forget_old_records()
+
+        def attempt() -> list[int]:
+            passes.reach_from_everywhere(fleet.native, robot)
+            if self._state is not fleet.state:  # a call that ran out of room has made larger arrays
+                self._take()
+            return [passes.find_one(self._along(path), robot, NONE, 0, ALONE) for path in paths]
+
+        found = [record for record in fleet.call(attempt) if record != NONE]
+        if not found:
+            return False
+        best = np.array([min(found, key=lambda record: int(fleet.state.records.arrival[record]))], np.int32)
+        fleet.reserve(np.array([robot], np.int32), best)
+        return True
+
+    def _along(self, path: Path) -> Native[State]:
         """The arrays with the moves of this path alone."""
-        first, target = self.native.fields.graph.first, self.native.fields.graph.target
+        first, target = self._native.fields.graph.first, self._native.fields.graph.target
         first[:] = 0
         sources = np.array(path[:-1], np.int32)
         first[sources + 1] = 1
         np.cumsum(first, out=first)
         for source, following in pairwise(path):
             target[first[source]] = following
-        return self.native
+        return self._native

@@ -9,7 +9,7 @@ import pytest
 from tests.programs import require_programs
 
 import carp_reference
-from carp_experiments.measuring.bench import ROBOTS
+from carp_experiments.measuring.bench_times import ROBOTS
 from carp_optimized import passes
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.orderings import carp

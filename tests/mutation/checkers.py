@@ -54,7 +54,7 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carp_verify.bound.least": (*BOUNDS, "verify/bound/test_stops"),
     "carp_verify.bound.network": (*BOUNDS, "verify/bound/test_stops"),
     "carp_verify.bound.tariff": BOUNDS,
-    "carp_verify.bound.rules": (*BOUNDS, "verify/optimum/test_gap", "oracle/api/test_bound"),
+    "carp_verify.bound.rules": (*BOUNDS, "optimum/test_gap", "oracle/api/test_bound"),
     "carp_verify.bound.cuts": BOUNDS,
     "carp_verify.optimum.refutation": ("verify/optimum/test_refutation", "verify/test_forgery"),
     "carp_verify.optimum.proof": (

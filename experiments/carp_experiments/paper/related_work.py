@@ -16,7 +16,7 @@ from carp_experiments.paper.quality import plan_first
 from carp_experiments.report import ExperimentReport, Figure, lines_of, table_by_map
 from carp_experiments.statistics import Interval, mean_interval, proportion_interval
 from carp_experiments.store import Row
-from carp_optimized.fixed_paths import add_on_path, paths_of
+from carp_optimized.fixed_paths import PathMoves, paths_of
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.orderings import carp, greedy
 from carp_spec import FixedPaths, Instance, LongestFirst, Plan, plan_cost
@@ -43,10 +43,11 @@ def related_row(case: MapCase) -> Row:
     plans: dict[str, Sequence[Plan]] = {}
     everyone = range(case.robots)
     paths = {FIXED[name].paths: [paths_of(fleet, robot, FIXED[name]) for robot in everyone] for name in CHOSEN}
+    moves = PathMoves(fleet)
     for name, options in FIXED.items():
         fleet.clear()
         for robot, choice in zip(everyone, paths[options.paths], strict=True):
-            add_on_path(fleet, robot, choice[: options.k])
+            moves.add(robot, choice[: options.k])
         plans[name] = fleet.plans
     carp(fleet, everyone)
     plans["CARP"] = fleet.plans

@@ -202,26 +202,26 @@ def planned_in_order(
     improving = Improving(crowd, no_paths(robots, room), seed)
     begun, time = timer.spent, timer.seconds or inf
 
-    def goes_on(until: int = until) -> bool:
+    def goes_on(last: int) -> bool:
         if is_part:
             timer.reserve(int(improving.rounds.paths.size.sum()))
-        return timer.goes_on(until)
+        return timer.goes_on(last)
 
-    def ends_well() -> bool:
+    def is_given_up() -> bool:
         took = timer.spent - begun
         done = int(np.count_nonzero(improving.rounds.paths.size)) + improving.missed
         is_in_time = HOPE * took < time or took * robots**2 < (took + timer.left(until)) * done**2
-        return SOME * improving.missed <= robots and is_in_time
+        return gives_up and (SOME * improving.missed > robots or not is_in_time)
 
     order = np.argsort(keys, kind="stable").astype(np.int32)
-    improving.plan_first(order, (lambda: goes_on() and ends_well()) if gives_up else goes_on, greed, effort)
-    if gives_up and not ends_well():
+    improving.plan_first(order, lambda: goes_on(until) and not is_given_up(), greed, effort)
+    if is_given_up():
         return improving.rounds.paths
-    last = improving.missed + MISSES * robots
+    most = improving.missed + MISSES * robots
     patient = timer.spent + PATIENCE * (timer.spent - begun) if gives_up else inf
 
     def goes_on_for(waiting: int) -> bool:
-        ends = max(until, GUIDED) if FEW * waiting <= robots else until
-        return improving.missed < last and timer.spent < patient and goes_on(ends)
+        last = max(until, GUIDED) if FEW * waiting <= robots else until
+        return improving.missed < most and timer.spent < patient and goes_on(last)
 
     return improving.make_way(goes_on_for)

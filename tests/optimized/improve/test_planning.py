@@ -12,7 +12,7 @@ from hypothesis import given
 from tests.optimized.crowds.measuring import measured, on_grid
 
 from carp_optimized.crowds.crowd import is_stepwise, ways_of
-from carp_optimized.crowds.improving import arrivals
+from carp_optimized.crowds.improving import Improving, arrivals
 from carp_optimized.crowds.rounds import GREEDY
 from carp_optimized.crowds.sipp import UNTIL_FOUND
 from carp_optimized.improve import first_paths, planning
@@ -108,6 +108,25 @@ def test_a_pass_gives_up_where_it_misses_more_than_a_few_robots() -> None:
 
     assert missed(gives_up=False) == 0
     assert missed(gives_up=True) > 90
+
+
+@pytest.mark.parametrize(("robots", "eighths", "missing"), [(120, 4, 0), (120, 6, 1), (250, 4, 1)])
+def test_way_is_made_longer_where_few_robots_wait(
+    robots: int, eighths: int, missing: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The time for prioritized planning is over after its pass, which misses few or many robots."""
+    crowd, now = measured(on_grid(20, robots)), [0.0]
+    plan_first = Improving.plan_first
+
+    def end_late(improving: Improving, *given: Any) -> None:  # noqa: ANN401 - those of the method
+        plan_first(improving, *given)
+        now[0] = float(eighths)
+
+    monkeypatch.setattr(Improving, "plan_first", end_late)
+    paths = first_paths.planned_in_order(
+        crowd, Clock(8.0, lambda: now[0], 0.0), 0, first_paths.SEARCHING, GREEDY, UNTIL_FOUND, ways_of(crowd)
+    )
+    assert min(int(np.count_nonzero(paths.size == 0)), 1) == missing
 
 
 def test_a_way_through_others_has_room_for_more_visits_than_the_longest_way(monkeypatch: pytest.MonkeyPatch) -> None:

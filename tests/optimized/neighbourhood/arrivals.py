@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 
 import carp_reference
 from carp_optimized import Queries, Reuse
-from carp_optimized.adding import add
 from carp_spec import Instance, Neighbourhood, Plan, ResourceId, RobotId, Solution, Visit
 from carp_spec.permutations import shuffle, splitmix64
 from carproof.testing.random_instances import Draw, Mix, draw_instance, draw_plan
@@ -59,7 +58,8 @@ class Arrivals:
 
     def by_fleet(self) -> tuple[Solution, Queries]:
         """The same from one compiled fleet, and the queries asked and avoided."""
-        from carp_optimized.fleet import PlannedFleet  # a run of mutants loads it after the questions
+        from carp_optimized.adding import add  # a run of mutants loads it after the questions
+        from carp_optimized.fleet import PlannedFleet
 
         fleet = PlannedFleet(self.instance, self.reuse)
         fleet.commit(self.before)
