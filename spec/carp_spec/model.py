@@ -99,7 +99,14 @@ class ResourceGraph:
     @property
     def constraints(self) -> tuple[Group, ...]:
         """What limits the robots: each resource's own capacity, as a group of it alone, then the groups."""
-        return (*(Group(each.id, (each.id,), each.capacity) for each in self.resources), *self.groups)
+        return tuple(map(self.constraint, range(len(self.resources) + len(self.groups))))
+
+    def constraint(self, index: int) -> Group:
+        """The constraint of that index."""
+        if index >= len(self.resources):
+            return self.groups[index - len(self.resources)]
+        resource = self.resources[index]
+        return Group(resource.id, (resource.id,), resource.capacity)
 
     def constraints_of(self, resource: ResourceId) -> tuple[int, ...]:
         """The indices of the constraints on a resource: of its own capacity, and of its groups."""

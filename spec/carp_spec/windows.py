@@ -45,7 +45,7 @@ def stays_within(plans: Iterable[Plan], resources: Container[ResourceId]) -> lis
 
 def constraints_on(graph: ResourceGraph, plans: Sequence[Plan], resource: ResourceId) -> list[Constraint]:
     """What limits the use of a resource beside the plans: its own capacity, and its groups."""
-    limits = [graph.constraints[each] for each in graph.constraints_of(resource)]
+    limits = map(graph.constraint, graph.constraints_of(resource))
     return [(stays_within(plans, limit.resources), limit.capacity) for limit in limits]
 
 

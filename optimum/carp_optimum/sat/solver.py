@@ -104,7 +104,7 @@ class Solver:
 
     def model(self) -> list[bool]:
         """The truth of each variable, from index 1, in the model found last."""
-        model = [False, *(literal > 0 for literal in self._solver.get_model() or [])]
+        model = [False, *map((0).__lt__, self._solver.get_model() or [])]
         return model + [False] * (self.formula.variables + 1 - len(model))
 
     def core(self) -> list[Literal]:

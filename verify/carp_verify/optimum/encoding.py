@@ -233,9 +233,9 @@ def violated(instance: Instance, plans: Sequence[Plan]) -> list[Conflict | Excha
     for number, group in enumerate(instance.graph.groups, len(instance.graph.resources)):
         stays[number] = stays_within(plans, group.resources)
     found: list[Conflict | Exchange] = []
-    constraints, gap = instance.graph.constraints, instance.gap
+    gap = instance.gap
     for constraint, intervals in stays.items():
-        capacity = constraints[constraint].capacity
+        capacity = instance.graph.constraint(constraint).capacity
         if len(intervals) > capacity:
             for tick in dict.fromkeys(enter for enter, _ in intervals):
                 present = sum(enter <= tick and (leave is None or tick < leave + gap) for enter, leave in intervals)
