@@ -69,21 +69,21 @@ def lower_bound(
     steps: int | None = None,
     on_step: Callable[[Progress], None] = lambda _: None,
     clock: Callable[[], int] = monotonic_ns,
-    seen: bool = True,
+    enough: int | None = None,
 ) -> BoundDocument:
     """Search for this many seconds or steps, whichever is over first, or until nothing is gained any more.
 
+    No claims are searched for once the bound is `enough`.
     Without a limit the search takes 10 seconds.
     With steps alone, the same instance gives the same certificate on one kind of processor. `on_step` is called after
-    each step, and now and then while claims are searched for; `clock` gives nanoseconds. `seen` is whether robots with
-    deadlines may be seen at ticks, for which the search for an optimum has no literals. Over stops, cuts alone are
+    each step, and now and then while claims are searched for; `clock` gives nanoseconds. Over stops, cuts alone are
     searched for. Raises `Refusal` for numbers that are too large.
     """
     require_instance(instance)
     require_limits(seconds=seconds, steps=steps)
     seconds = BOUND_SECONDS if seconds is None and steps is None else seconds
     if goals_stand_alone(instance):
-        return _by_prices(instance, seconds, steps, on_step, clock, seen=seen)
+        return _by_prices(instance, seconds, steps, on_step, clock, enough)
     from carp_optimum.claims.disjoint_cuts import bound_by_cuts  # noqa: PLC0415 - it loads a solver
 
     check = _limit(seconds, steps, PARTS, clock)
@@ -96,8 +96,7 @@ def _by_prices(
     steps: int | None,
     on_step: Callable[[Progress], None],
     clock: Callable[[], int],
-    *,
-    seen: bool,
+    enough: int | None,
 ) -> BoundDocument:
     """The bound of robots with goals alone."""
     from carp_optimum.claims.deadline_search import DeadlineSearch  # noqa: PLC0415 - numba is slow to load
@@ -115,7 +114,13 @@ def _by_prices(
         return look
 
     def limits(parts: tuple[int, int, int]) -> _Limits:
-        first, rough = (looking(_limit(seconds, steps, each, clock)) for each in parts[:2])
+        first, look = (looking(_limit(seconds, steps, each, clock)) for each in parts[:2])
+
+        def rough() -> None:
+            look()
+            if enough is not None and search.best > (enough - 1) * SCALE:
+                raise TimeOver
+
         return _Limits(first, rough, looking(_limit(seconds, None, parts[2], clock)), looking(end))
 
     end = _limit(seconds, steps, PARTS, clock, lambda: WAYS_AT_END * search.longest)
@@ -125,7 +130,7 @@ def _by_prices(
     sights = SightSearch(search)
     report()
     with suppress(TimeOver):
-        claims = DeadlineSearch(search), sights if seen else None
+        claims = DeadlineSearch(search), sights
         is_small = len(instance.robots) * search.horizon <= MOST_TICKS
         if not (is_small and _by_programme(*claims, by_programme)):
             _by_steps(*claims, by_steps)
@@ -143,14 +148,13 @@ class _Limits(NamedTuple):
     end: Callable[[], None]
 
 
-def _prove(sights: "SightSearch | None", check: Callable[[], None]) -> None:
+def _prove(sights: "SightSearch", check: Callable[[], None]) -> None:
     """Prove the claims that have a price, and drop the others."""
-    if sights is not None:
-        with suppress(TimeOver):
-            sights.prove(check)
+    with suppress(TimeOver):
+        sights.prove(check)
 
 
-def _by_steps(deadlines: "DeadlineSearch", sights: "SightSearch | None", limits: _Limits) -> None:
+def _by_steps(deadlines: "DeadlineSearch", sights: "SightSearch", limits: _Limits) -> None:
     """Climb and add claims in turns; raises `TimeOver` at the end of the time."""
     search = deadlines.search
     rough = limits.rough
@@ -160,17 +164,15 @@ def _by_steps(deadlines: "DeadlineSearch", sights: "SightSearch | None", limits:
 
     def gain_of_sights() -> int:
         rough()
-        return 0 if sights is None else min(sights.round(rough), search.best // NEXT_AIM)
+        return min(sights.round(rough), search.best // NEXT_AIM)
 
     def watch() -> None:
-        if sights is not None:
-            sights.watch(rough)
+        sights.watch(rough)
 
     with suppress(TimeOver):
         gain = min(search.best // FIRST_AIM, max(search.best // LARGE_FIRST, LARGE_AIM))
-        if sights is not None:
-            with suppress(TimeOver):
-                search.climb(gain, last_aim(), limits.first)
+        with suppress(TimeOver):
+            search.climb(gain, last_aim(), limits.first)
         by_sights = gain_of_sights()
         while gain > 0:
             before = search.best
@@ -185,7 +187,7 @@ def _by_steps(deadlines: "DeadlineSearch", sights: "SightSearch | None", limits:
     search.climb(max(ROUGH_AIM, search.best // FINAL_AIM), FINE_AIM, limits.end)
 
 
-def _by_programme(deadlines: "DeadlineSearch", sights: "SightSearch | None", limits: _Limits) -> bool:
+def _by_programme(deadlines: "DeadlineSearch", sights: "SightSearch", limits: _Limits) -> bool:
     """Solve linear programmes and add claims in turns; raises `TimeOver` at the end of the time.
 
     Returns whether the first programme was solved in its part of the time; otherwise nothing more is done.
@@ -207,7 +209,7 @@ def _by_programme(deadlines: "DeadlineSearch", sights: "SightSearch | None", lim
 
 
 def _add_claims(
-    columns: "ColumnGeneration", sights: "SightSearch | None", deadlines: "DeadlineSearch", look: Callable[[], None]
+    columns: "ColumnGeneration", sights: "SightSearch", deadlines: "DeadlineSearch", look: Callable[[], None]
 ) -> None:
     """Add claims that the best shares of ways break, round by round, until these gain little; `look` may end it."""
     from carp_optimum.claims.deadline_search import STEPS  # noqa: PLC0415 - numba is slow to load
@@ -222,7 +224,7 @@ def _add_claims(
         idle = idle + 1 if gained < IDLE_GAIN else 0
         delays, places = columns.ways(STEPS)
         try:
-            if sights is not None and sights.is_small:
+            if sights.is_small:
                 sights.is_slow = gained < LEAST_GAIN
                 sights.add([*zip(delays, places, strict=True)], look)
             if gained < LEAST_GAIN and deadlines.is_possible:

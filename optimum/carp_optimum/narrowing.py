@@ -54,8 +54,10 @@ def narrowed(instance: Instance, look: Callable[[], None]) -> Results:
     work_of_step = WORK_OF_STEP + WORK_OF_STEP_BY_TEN_RESOURCES * len(instance.graph.resources) // 10
     work += PRICE_STEPS * work_of_step * robots
     yield work, known
-    bound = PricedBound(instance, lower_bound(instance, steps=PRICE_STEPS, on_step=lambda _: look(), seen=False))
-    known = replace(known, lower=bound.certificate.bound)
+    enough = None if known.total is None else known.total - STRIDE
+    certificate = lower_bound(instance, steps=PRICE_STEPS, on_step=lambda _: look(), enough=enough)
+    bound = PricedBound(instance, certificate)
+    known = replace(known, lower=certificate.bound)
     work, known = yield from _raised(
         known,
         work,
@@ -91,7 +93,7 @@ def _planned(
     """The plans of a first annealing, if any: the work, what is known, and where better plans come from."""
     known = Between(instance)
     better = heuristics.ever_better(instance, look)
-    work = heuristics.ROUNDS * heuristics.WORK_OF_ROUND * len(instance.robots)
+    work = heuristics.WORK_OF_ANNEALING * len(instance.robots)
     yield work, known
     _, plans = next(better, (work, None))
     known = known.with_plans(plans)

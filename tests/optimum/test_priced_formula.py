@@ -74,12 +74,19 @@ def test_any_prices_leave_the_optimum_and_nothing_cheaper(instance: Instance, da
 
 
 @pytest.mark.parametrize(("seed", "after_goal"), [(7, "park"), (10, "vanish")])
-def test_the_certificate_s_deadlines_count(seed: int, after_goal: AfterGoal) -> None:
+@pytest.mark.parametrize("is_seen", [False, True])
+def test_the_certificate_s_deadlines_count(
+    seed: int, after_goal: AfterGoal, is_seen: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Those of robots that are seen have no clauses of their own, but a part of the nodes' reduced costs."""
+    if not is_seen:
+        monkeypatch.setattr("carp_optimum.claims.pair_search.LARGEST_ENCODING", 0)
     instance = town(seed, after_goal)
     least = core_guided(instance, SECONDS).cost
     assert least is not None
-    certificate = lower_bound(instance, steps=1500, seen=False)
-    assert len(certificate.deadlines) > 2
+    certificate = lower_bound(instance, steps=1500)
+    assert len(certificate.deadlines) > 1
+    assert any(each.seen for each in certificate.deadlines) == is_seen
     assert verify_bound(instance, certificate) <= least
     bound = PricedBound(instance, certificate)
     assert -(-bound.parts // bound.scale) == certificate.bound

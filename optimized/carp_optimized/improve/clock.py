@@ -30,10 +30,11 @@ class Clock:
         return self.now() - self.started
 
     def left(self, eighths: int = ALL) -> float:
-        """The seconds that are left of so many eighths of the time."""
+        """The seconds that are left of so many eighths of the time. Where rounds are counted, `now` may end them."""
+        spent = self.spent
         if self.seconds is None:
             return inf
-        return self.begun + (self.seconds - self.reserved - self.begun) * eighths / ALL - self.spent
+        return self.begun + (self.seconds - self.reserved - self.begun) * eighths / ALL - spent
 
     def goes_on(self, eighths: int = ALL) -> bool:
         """Whether so many eighths of the time are not over."""

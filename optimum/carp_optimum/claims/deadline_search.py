@@ -9,7 +9,9 @@ nothing else follows from the robots outside. Source: the implicit hitting sets 
 prices in place of the hitting set.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import closing
 from typing import TypeAlias
 
 import numpy as np
@@ -20,7 +22,7 @@ from carp_optimum.lagrangian.deadlines import Deadlines, Member
 from carp_optimum.lagrangian.price_search import PriceSearch
 from carp_optimum.sat.proving import short_refutation
 from carp_optimum.sat.solver import Solver
-from carp_verify.optimum.clauses import Literal
+from carp_verify.optimum.clauses import Clause, Formula, Literal
 from carp_verify.optimum.encoding import Encoding, violated
 
 STEPS = 120
@@ -87,11 +89,11 @@ class DeadlineSearch:
             self.cores = self.cores or _Cores(self.search, check)
             self.cores.check = check
             for share in SHARES:
-                for core in self.cores.disjoint((later <= share).argmax(axis=1).tolist()):
+                for part, core in self.cores.disjoint((later <= share).argmax(axis=1).tolist()):
                     if len(core) > LARGEST_GROUP or _steps(later, core) > LARGEST_TO_RAISE:
                         continue
                     oftenest_first = dict(sorted(core.items(), key=lambda each: -later[each]))
-                    raised = self.cores.raised(oftenest_first, (later == 0).argmax(axis=1) + MARGIN)
+                    raised = self.cores.raised(oftenest_first, (later == 0).argmax(axis=1) + MARGIN, part)
                     if _steps(later, raised) <= ENOUGH:
                         deadlines = self._prove(raised, check)
                         if deadlines is not None:
@@ -119,7 +121,11 @@ def _steps(later: Longs, allowed: Allowed) -> int:
 
 
 class _Cores:
-    """Cores of the formula of all robots that have a way, with the conflicts that were found so far."""
+    """Cores of the formula of all robots that have a way, with the conflicts that were found so far.
+
+    A model of it takes long, as it has plans of all robots. So a core is made smaller, and its delays larger, by the
+    clauses about its robots alone: what these refute, all clauses do.
+    """
 
     def __init__(self, search: PriceSearch, check: Callable[[], None]) -> None:
         self.instance = search.instance
@@ -127,7 +133,10 @@ class _Cores:
         self.most = search.dual.delays - 1
         self.encoding = Encoding(self.instance, check)
         self.present = [self.encoding.formula.variable() for _ in self.instance.robots]
-        self.solver = Solver(self.encoding.formula, self.look)
+        self.robot_of = {variable: position for position, variable in enumerate(self.present)}
+        self.about: dict[frozenset[int], list[Clause]] = defaultdict(list)
+        self.sorted = 0
+        self.whole = _Part(range(len(self.present)), self.look)
 
     def look(self) -> None:
         """Look at the clock of this round."""
@@ -142,19 +151,46 @@ class _Cores:
         clauses[known:] = [(*clause, -self.present[position]) for clause in clauses[known:]]
         return -robot.late[delay]
 
-    def core(self, allowed: Allowed, conflicts: int) -> Allowed | None:
-        """Robots that cannot all keep their delays; `None` if all can, or if the conflicts do not suffice to say."""
+    def part(self, robots: Iterable[int]) -> "_Part":
+        """The clauses about these robots alone."""
+        part = _Part(robots, self.look)
+        for about, clauses in self.about.items():
+            part.take(about, clauses)
+        return part
+
+    def share_out(self, part: "_Part") -> None:
+        """Note about which robots the new clauses are, and add them to the formulas.
+
+        A variable is about the robot of the first clause that has it and is about one robot alone.
+        """
+        clauses = self.encoding.formula.clauses
+        for clause in clauses[self.sorted :]:
+            variables = [*map(abs, clause)]
+            about = frozenset(self.robot_of[each] for each in variables if each in self.robot_of)
+            if len(about) == 1:
+                self.robot_of |= dict.fromkeys(variables, *about)
+            self.about[about].append(clause)
+            for each in {self.whole, part}:
+                each.take(about, [clause])
+        self.sorted = len(clauses)
+
+    def core(self, allowed: Allowed, conflicts: int, part: "_Part") -> Allowed | None:
+        """Robots of the part that cannot all keep their delays.
+
+        `None` if all can, or if its clauses and so many conflicts do not suffice to say.
+        """
         literals = {self.present[position]: position for position in allowed}
         literals |= {self.keeps(position, delay): position for position, delay in allowed.items()}
         while True:
             self.look()
-            answer = self.solver.satisfiable([*literals], conflicts)
+            self.share_out(part)
+            answer = part.satisfiable(literals, conflicts)
             if answer is None:
                 return None
             if not answer:
-                named = {literals[literal] for literal in self.solver.core()}
+                named = {literals[literal] for literal in part.core()}
                 return {position: delay for position, delay in allowed.items() if position in named}
-            model = self.solver.model()
+            model = part.model(self.encoding.formula.variables)
             plans = [self.encoding.robots[position].plan(model) for position in allowed]
             meetings = violated(self.instance, [plan for plan in plans if plan is not None])
             if not meetings:
@@ -162,23 +198,24 @@ class _Cores:
             for meeting in meetings:
                 self.encoding.forbid(meeting)
 
-    def disjoint(self, delays: Iterable[int]) -> Iterable[Allowed]:
-        """Cores that have no robot in common, of the robots with these delays."""
+    def disjoint(self, delays: Iterable[int]) -> Iterable[tuple["_Part", Allowed]]:
+        """Cores that have no robot in common, of the robots with these delays, each with the clauses about its own."""
         robots = self.encoding.robots
         allowed = {at: delay for at, delay in enumerate(delays) if robots[at].shortest is not None}
-        while (core := self.core(allowed, CONFLICTS_TO_FIND)) is not None:
-            core = self.shrunk(core)
-            yield core
+        while (core := self.core(allowed, CONFLICTS_TO_FIND, self.whole)) is not None:
+            with closing(self.part(core)) as part:
+                core = self.shrunk(core, part)
+                yield part, core
             if not core:
                 return
             allowed = {position: delay for position, delay in allowed.items() if position not in core}
 
-    def shrunk(self, core: Allowed) -> Allowed:
+    def shrunk(self, core: Allowed, part: "_Part") -> Allowed:
         """A core within the core, from which the solver drops nothing quickly."""
         kept: dict[int, int] = {}
         while core:
             position, *rest = core
-            smaller = self.core({**kept, **{other: core[other] for other in rest}}, CONFLICTS_TO_SHRINK)
+            smaller = self.core({**kept, **{other: core[other] for other in rest}}, CONFLICTS_TO_SHRINK, part)
             if smaller is None:
                 kept[position] = core[position]
                 core = {other: core[other] for other in rest}
@@ -187,13 +224,58 @@ class _Cores:
                 kept = {other: delay for other, delay in kept.items() if other in smaller}
         return kept
 
-    def raised(self, core: Allowed, most: Longs) -> Allowed:
+    def raised(self, core: Allowed, most: Longs, part: "_Part") -> Allowed:
         """The core with delays that the solver cannot quickly raise any further, up to the largest that are wanted."""
         raised = dict(core)
         for position in core:
             while raised[position] < min(most[position], self.most):
                 raised[position] += 1
-                if self.core(raised, CONFLICTS_TO_RAISE) is None:
+                if self.core(raised, CONFLICTS_TO_RAISE, part) is None:
                     raised[position] -= 1
                     break
         return raised
+
+
+class _Part:
+    """The clauses about some of the robots, with variables of its own: a solver gives each one a value."""
+
+    def __init__(self, robots: Iterable[int], look: Callable[[], None]) -> None:
+        self.robots = frozenset(robots)
+        self.formula = Formula()
+        self.solver = Solver(self.formula, look)
+        self.own: dict[Literal, Literal] = {}
+        self.given: dict[Literal, Literal] = {}
+
+    def close(self) -> None:
+        """Free the solver."""
+        self.solver.close()
+
+    def take(self, about: frozenset[int], clauses: Iterable[Clause]) -> None:
+        """Add clauses about these robots, if they are among its own."""
+        if about <= self.robots:
+            for clause in clauses:
+                self.formula.add(*map(self.literal, clause))
+
+    def literal(self, given: Literal) -> Literal:
+        """Its own literal for a given one."""
+        if given not in self.own:
+            own = self.formula.variable()
+            self.own |= {abs(given): own, -abs(given): -own}
+            self.given |= {own: abs(given), -own: -abs(given)}
+        return self.own[given]
+
+    def satisfiable(self, literals: Iterable[Literal], conflicts: int) -> bool | None:
+        """As `Solver.satisfiable`, with given literals."""
+        return self.solver.satisfiable([*map(self.literal, literals)], conflicts)
+
+    def core(self) -> Iterable[Literal]:
+        """As `Solver.core`, with given literals."""
+        return [self.given[literal] for literal in self.solver.core()]
+
+    def model(self, variables: int) -> Sequence[bool]:
+        """As `Solver.model`, with so many given variables; those that it does not have are false."""
+        model, own = [False] * (variables + 1), self.solver.model()
+        for variable, given in self.given.items():
+            if variable > 0:
+                model[given] = own[variable]
+        return model

@@ -10,9 +10,10 @@ from carp_spec import Instance, Plan, Refusal, RobotId, Solution, total_cost
 POLISHES, ROUNDS_OF_POLISH = 50, 200
 PASSES = 20  # of CARP, each with the robots first that the one before left out
 STARTS = 6  # seeds of annealing
-ROUNDS = 100_000
-WORK_OF_ROUND = 2
-"""The propagations of a round of annealing, for each robot."""
+ROUNDS, ROUNDS_OF_CROWD = 100_000, 30_000
+"""Of an annealing. With a third of the rounds, those of a crowd find better plans."""
+WORK_OF_ANNEALING = 150_000
+"""The propagations of an annealing, for each robot."""
 
 
 def plans_of_all(instance: Instance, order: Sequence[RobotId], check: Callable[[], None]) -> Sequence[Plan] | None:
@@ -73,31 +74,41 @@ def ever_better(instance: Instance, look: Callable[[], None]) -> Iterator[tuple[
     solver; `look` is called now and then, and may end it by an exception. Raises `Refusal` for numbers that are too
     large, and for formulas.
     """
-    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - slow to load
-    from carp_optimized.improve.repair import repair  # noqa: PLC0415
-    from carp_optimum.sat.group_search import improved  # noqa: PLC0415
+    from carp_optimum.sat.group_search import improved  # noqa: PLC0415 - slow to load
 
+    best: Sequence[Plan] = ()
+    work = 0
+    for found in _annealed(instance, look):
+        if not best or total_cost(instance, found) < total_cost(instance, best):
+            best = found
+        work += WORK_OF_ANNEALING * len(instance.robots)
+        yield work, best
+    if best:
+        for further, plans in improved(instance, best, look):
+            yield work + further, plans
+
+
+def _annealed(instance: Instance, look: Callable[[], None]) -> Iterator[Sequence[Plan]]:
+    """The plans of annealings that count rounds, of one seed after the other; none if there are none to begin with."""
+    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - slow to load
+    from carp_optimized.improve.annealing import anneal  # noqa: PLC0415
+    from carp_optimized.improve.planning import plan_crowd  # noqa: PLC0415
+    from carp_optimized.improve.repair import repair  # noqa: PLC0415
+
+    def looking() -> float:
+        look()
+        return 0.0
+
+    for seed in range(STARTS):
+        found = plan_crowd(instance, iterations=ROUNDS_OF_CROWD, seconds=None, seed=seed, clock=looking)
+        if found is None or found.solution.unplanned:
+            break
+        yield found.solution.plans
+    else:
+        return
     fleet = PlannedFleet(instance)
     carp(fleet, range(len(instance.robots)))
     first = repair(instance, Solution.of(instance, fleet.plans))
-    if len(first.plans) < len(instance.robots):
-        return
-    best: Sequence[Plan] = first.plans
-    work = 0
-    for seed in range(STARTS):
-        found = _annealed(instance, first, seed, look)
-        if total_cost(instance, found) < total_cost(instance, best):
-            best = found
-        work += ROUNDS * len(instance.robots) * WORK_OF_ROUND
-        yield work, best
-    for further, plans in improved(instance, best, look):
-        yield work + further, plans
-
-
-def _annealed(instance: Instance, solution: Solution, seed: int, look: Callable[[], None]) -> Sequence[Plan]:
-    """The plans of an annealing whose clock counts rounds."""
-    from carp_optimized.improve.annealing import anneal  # noqa: PLC0415 - slow to load
-
     played = 0
 
     def count(rounds: int, _: int, __: int) -> None:
@@ -105,4 +116,9 @@ def _annealed(instance: Instance, solution: Solution, seed: int, look: Callable[
         look()
         played = rounds
 
-    return anneal(instance, solution, ROUNDS, seed=seed, advance=count, clock=lambda: played).plans
+    def clock() -> int:
+        return played
+
+    for seed in range(0 if first.unplanned else STARTS):
+        played = 0
+        yield anneal(instance, first, ROUNDS, seed=seed, advance=count, clock=clock).plans

@@ -6,6 +6,7 @@ price of each resource that nobody is in, and the price of deadlines for each ro
 takes it that all the others pay it.
 """
 
+from collections import defaultdict
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
@@ -56,9 +57,7 @@ def priced_formula(instance: Instance, bound: PricedBound, cost: int, look: Call
         while robot.horizon < horizon:
             robot.grow()
     encoding.close()
-    for conflict in encoding.entries():
-        look()
-        encoding.forbid(conflict)
+    _forbid_meetings(encoding, look)
     _forbid_exchanges(encoding)
     formula, unit = encoding.formula, max(1, bound.gap(cost))
     levels = [{node: _level(reduced.nodes.get(node, 0), unit) for node in robot.node} for robot, reduced in described]
@@ -75,6 +74,30 @@ def priced_formula(instance: Instance, bound: PricedBound, cost: int, look: Call
     if len(total) > LEVELS:
         formula.add(-total[LEVELS])
     return priced
+
+
+def _forbid_meetings(encoding: Encoding, look: Callable[[], None]) -> None:
+    """Keep all capacities, as `Encoding.forbid` does, but look only at robots that have a node at the tick."""
+    instance = encoding.instance
+    near: dict[tuple[ResourceId, int], set[int]] = defaultdict(set)
+    there: dict[ResourceId, set[int]] = defaultdict(set)
+    for position, robot in enumerate(encoding.robots):
+        there[robot.robot.goal].add(position)
+        for place, leave in robot.node:
+            for tick in range(leave - robot.routes.duration[place], leave + instance.gap):
+                near[robot.routes.resource(place), tick].add(position)
+    for conflict in encoding.entries():
+        look()
+        constraint = encoding.constraints[conflict.constraint]
+        positions = sorted(
+            {
+                position
+                for resource in constraint.resources
+                for position in (*near[resource, conflict.tick], *there[resource])
+            }
+        )
+        present = [encoding.presence(each, conflict.constraint, conflict.tick, instance.gap) for each in positions]
+        encoding.formula.at_most([literal for literal in present if literal is not None], constraint.capacity)
 
 
 def _forbid_exchanges(encoding: Encoding) -> None:
