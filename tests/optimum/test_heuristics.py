@@ -6,10 +6,10 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from tests.optimum.test_branching import nothing
 from tests.profiles import draws
-from tests.spec.making import line
+from tests.spec.making import grid, line
 from tests.verify.optimum.test_optimum import turned_ring
 
-from carp_optimum.sat.heuristics import plans_of_all
+from carp_optimum.sat.heuristics import ever_better, plans_of_all
 from carp_optimum.sat.solver import TimeOver
 from carp_reference import plan
 from carp_spec import Carp, Instance, Robot, Solution, judge
@@ -61,3 +61,22 @@ def test_numbers_that_the_arrays_do_not_hold_are_planned_by_the_reference() -> N
     for release in (2**31, 0):
         instance = Instance(line("abc", a=2**29, b=2**29), (Robot("r", "a", "c", release), Robot("s", "b", "c")))
         assert plans_of_all(instance, [*instance.robot], nothing) is not None
+
+
+@pytest.mark.parametrize(("pace", "last"), [(1, 50), (2, 0)])
+def test_annealings_look_at_the_clock(pace: int, last: int) -> None:
+    """Robots that move a step a tick are planned as a crowd, others by CARP."""
+    instance = Instance(grid(8, 8), tuple(Robot(str(k), f"{k},0", f"{7 - k},7", pace=pace) for k in range(8)))
+    looks = 0
+
+    def end() -> None:
+        nonlocal looks
+        looks += 1
+        if looks > last:
+            raise TimeOver
+
+    with pytest.raises(TimeOver):
+        next(ever_better(instance, end))
+    work, plans = next(ever_better(instance, nothing))
+    assert work > 0
+    assert judge(instance, Solution(tuple(plans), tuple(each.robot for each in plans))).unplanned == 0

@@ -40,6 +40,13 @@ def test_claims_about_robots_that_meet_raise_the_bound(instance: Instance, expec
     assert certificate == lower_bound(instance, steps=1600)
 
 
+def test_no_claims_are_searched_for_once_the_bound_is_enough() -> None:
+    instance = two_lanes()
+    enough = lower_bound(instance, steps=1600, enough=lower_bound(instance, steps=0).bound)
+    assert not enough.deadlines
+    assert lower_bound(instance, steps=1600, enough=1000) == lower_bound(instance, steps=1600)
+
+
 def test_robots_that_are_seen_more_than_once_raise_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     instance = way_round(14)
     certificate = lower_bound(instance, steps=1600)
