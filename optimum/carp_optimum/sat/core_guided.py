@@ -44,10 +44,8 @@ if TYPE_CHECKING:
     from carp_optimum.background import BackgroundSearch
 
 CONFLICTS_TO_SHRINK = 300  # of a search without one literal of a core
-CONFLICTS_BEFORE_BESIDE = 20_000
-"""Most searches that end soon end before these, and faster while nothing uses the memory beside them."""
-SHARE = 4
-"""The work of the search beside for that of this one: where this one takes long, the other one mostly ends first."""
+CONFLICTS_BEFORE_BESIDE = 60_000
+"""Most searches that end within a minute end before these, and faster while nothing uses the memory beside them."""
 CONFLICTS_BETWEEN_RESULTS = 2000
 """After this many conflicts the search asks for what was found beside it."""
 DELAY_OF_DOUBT = 20  # ticks of all robots together, at which it is asked whether there are any plans
@@ -179,7 +177,7 @@ class CoreGuided:
     def read_beside(self) -> None:
         """Ask for what was found beside at an amount of work, so that the answer does not depend on the clock."""
         if self.beside is not None:
-            work = (self.solver.work - self.work_before) * SHARE
+            work = (self.solver.work - self.work_before) * 3 // 4  # the two slow each other down, the other one more
             self.take(self.beside.result(work))
         elif self.start_beside is not None and self.solver.conflicts > CONFLICTS_BEFORE_BESIDE:
             start, self.start_beside = self.start_beside, None
