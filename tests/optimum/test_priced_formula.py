@@ -1,18 +1,21 @@
 """Formulas made small by a lower bound hold an optimum, and nothing cheaper."""
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import draws
 from tests.verify.bound.examples import completed, priced
 from tests.verify.optimum.models import model_of
-from tests.verify.optimum.tiny import TINY
+from tests.verify.optimum.tiny import GROUPED, TINY, case
 
 from carp_optimum.bound import lower_bound
 from carp_optimum.lagrangian.reduced_costs import PricedBound, ReducedCosts
 from carp_optimum.sat.core_guided import core_guided
 from carp_optimum.sat.priced_formula import priced_formula
 from carp_spec import AfterGoal, Instance, judge
+from carp_spec.model import Following
 from carp_verify.optimum.encoding import Encoding
 from carp_verify.optimum.joint_search import least_total_cost
 from carp_verify.optimum.proof import solution_of
@@ -47,6 +50,17 @@ def test_the_formula_holds_plans_from_the_optimum_on(instance: Instance, steps: 
         later = cheapest(instance, bound, least + 2)
         assert later is not None
         assert least <= later <= least + 2
+
+
+@pytest.mark.parametrize("following", ["allowed", "forbidden"])
+@pytest.mark.parametrize("number", range(40))
+def test_the_formula_keeps_groups_and_leaves_resources_free_behind_robots(number: int, following: Following) -> None:
+    instance = replace(case(number, GROUPED)[0], following=following)
+    least = least_total_cost(instance)
+    if least is not None:
+        bound = PricedBound(instance, lower_bound(instance, steps=0))
+        assert cheapest(instance, bound, least) == least
+        assert cheapest(instance, bound, least - 1) is None
 
 
 def town(seed: int, after_goal: AfterGoal) -> Instance:

@@ -30,8 +30,8 @@ class Clock:
         return self.now() - self.started
 
     def left(self, eighths: int = ALL) -> float:
-        """The seconds that are left of so many eighths of the time. Where rounds are counted, `now` may end them."""
-        spent = self.spent
+        """The seconds that are left of so many eighths of the time."""
+        spent = self.spent  # also where rounds are counted: `now` may end the search by an exception
         if self.seconds is None:
             return inf
         return self.begun + (self.seconds - self.reserved - self.begun) * eighths / ALL - spent

@@ -170,8 +170,9 @@ class _Cores:
             if len(about) == 1:
                 self.robot_of |= dict.fromkeys(variables, *about)
             self.about[about].append(clause)
-            for each in {self.whole, part}:
-                each.take(about, [clause])
+            self.whole.take(about, [clause])
+            if part is not self.whole:
+                part.take(about, [clause])
         self.sorted = len(clauses)
 
     def core(self, allowed: Allowed, conflicts: int, part: "_Part") -> Allowed | None:
@@ -244,7 +245,7 @@ class _Part:
         self.formula = Formula()
         self.solver = Solver(self.formula, look)
         self.own: dict[Literal, Literal] = {}
-        self.given: dict[Literal, Literal] = {}
+        self.given = [0]
 
     def close(self) -> None:
         """Free the solver."""
@@ -261,7 +262,7 @@ class _Part:
         if given not in self.own:
             own = self.formula.variable()
             self.own |= {abs(given): own, -abs(given): -own}
-            self.given |= {own: abs(given), -own: -abs(given)}
+            self.given.append(abs(given))
         return self.own[given]
 
     def satisfiable(self, literals: Iterable[Literal], conflicts: int) -> bool | None:
@@ -270,12 +271,11 @@ class _Part:
 
     def core(self) -> Iterable[Literal]:
         """As `Solver.core`, with given literals."""
-        return [self.given[literal] for literal in self.solver.core()]
+        return [self.given[own] if own > 0 else -self.given[-own] for own in self.solver.core()]
 
     def model(self, variables: int) -> Sequence[bool]:
         """As `Solver.model`, with so many given variables; those that it does not have are false."""
-        model, own = [False] * (variables + 1), self.solver.model()
-        for variable, given in self.given.items():
-            if variable > 0:
-                model[given] = own[variable]
+        model = [False] * (variables + 1)
+        for given, is_true in zip(self.given, self.solver.model(), strict=True):
+            model[given] = is_true
         return model
