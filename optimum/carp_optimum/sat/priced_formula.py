@@ -3,7 +3,8 @@
 It has only nodes whose reduced cost (`carp_optimum.lagrangian.reduced_costs`) is within the gap, and all conflicts.
 The costs that share the gap are counted in `LEVELS` parts of it, rounded down: the reduced cost of each robot, the
 price of each resource that nobody is in, and the price of deadlines for each robot that is late, but one: the bound
-takes it that all the others pay it.
+takes it that all the others pay it. Instances have no groups: with them, exchanges would need more than the directions
+of edges, and the search that asks for these formulas (`carp_optimum.narrowing`) found no optimum sooner.
 """
 
 from collections import defaultdict
@@ -88,16 +89,10 @@ def _forbid_meetings(encoding: Encoding, look: Callable[[], None]) -> None:
                 near[robot.routes.resource(place), tick].add(position)
     for conflict in encoding.entries():
         look()
-        constraint = encoding.constraints[conflict.constraint]
-        positions = sorted(
-            {
-                position
-                for resource in constraint.resources
-                for position in (*near[resource, conflict.tick], *there[resource])
-            }
-        )
+        resource = instance.graph.resources[conflict.constraint]
+        positions = sorted(near[resource.id, conflict.tick] | there[resource.id])
         present = [encoding.presence(each, conflict.constraint, conflict.tick, instance.gap) for each in positions]
-        encoding.formula.at_most([literal for literal in present if literal is not None], constraint.capacity)
+        encoding.formula.at_most([literal for literal in present if literal is not None], resource.capacity)
 
 
 def _forbid_exchanges(encoding: Encoding) -> None:
@@ -151,19 +146,14 @@ def _reduced_cost(
 
 
 def _prices_of_empty_places(encoding: Encoding, bound: PricedBound, unit: int) -> list[list[Literal]]:
-    """For each price of a resource or a group at a tick, a number that is at least its level if nobody is there."""
+    """For each price of a resource at a tick, a number that is at least its level if nobody is there."""
     numbers = []
-    graph = encoding.instance.graph
-    members = {group.id: group.resources for group in graph.groups}
-    of_groups = ((members[id], tick, price) for id, tick, price in bound.certificate.groups)
-    of_resources = (((id,), tick, price) for id, tick, price in bound.certificate.resources)
-    for resources, tick, price in (*of_resources, *of_groups):
+    for resource, tick, price in bound.certificate.resources:
         level = _level(price, unit)
         if level > 0:
             number = _number(encoding.formula, level)
-            robots = range(len(encoding.robots))
-            places = [graph.index[each] for each in resources]
-            present = [encoding.presence(position, place, tick) for position in robots for place in places]
+            place = encoding.instance.graph.index[resource]
+            present = [encoding.presence(position, place, tick) for position in range(len(encoding.robots))]
             encoding.formula.add(*(literal for literal in present if literal is not None), number[-1])
             numbers.append(number)
     return numbers
