@@ -89,7 +89,7 @@ def _meeting(instance: Instance, groups: Sequence[Group]) -> tuple[Group, Group]
 def _searched(instance: Instance, robots: tuple[RobotId, ...], check: Callable[[], None]) -> Group:
     """The group with its best plans and its cut; its plans are none where it has none."""
     group = group_of(instance, robots)
-    best = core_guided(group, LOOKS, clock_of(check))
+    best = core_guided(group, LOOKS, clock_of(check), watch=check)
     check()
     plans = () if best.solution is None else best.solution.plans
     if best.shortest is None or best.lower <= best.shortest:

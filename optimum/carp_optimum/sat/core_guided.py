@@ -77,11 +77,12 @@ def core_guided(
     limit: float,
     clock: Callable[[], int] = monotonic_ns,
     start_beside: "Callable[[CoreGuided], None] | None" = None,
+    watch: Callable[[], None] | None = None,
 ) -> Optimum:
     """Search for the optimum for at most `limit` seconds. Raises `Refusal` if the formula outgrows the memory.
 
     `start_beside` is called once, after many conflicts, unless the instance has groups or stops, which that search does
-    not know.
+    not know. `watch` is called as time goes by, and may end the search by `TimeOver`; by default it looks at the clock.
 
     The result does not depend on the clock, which gives nanoseconds: the same instance gives the same solution.
     """
@@ -93,7 +94,7 @@ def core_guided(
     except TimeOver:
         return Optimum(None, None, 0, decided=False, solution=None, evidence=Evidence((), ()))
     is_known = goals_stand_alone(instance) and not instance.graph.groups
-    with closing(CoreGuided(encoding, deadline, start_beside if is_known else None)) as search:
+    with closing(CoreGuided(encoding, deadline, start_beside if is_known else None, watch)) as search:
         return search.run()
 
 
@@ -101,13 +102,17 @@ class CoreGuided:
     """The state of a search; `known` has the bound and the plans that were found beside it."""
 
     def __init__(
-        self, encoding: Encoding, deadline: Deadline, start_beside: "Callable[[CoreGuided], None] | None"
+        self,
+        encoding: Encoding,
+        deadline: Deadline,
+        start_beside: "Callable[[CoreGuided], None] | None",
+        watch: Callable[[], None] | None,
     ) -> None:
         self.instance = encoding.instance
         self.start_beside = start_beside
         self.deadline = deadline
         self.encoding = encoding
-        self.solver = Solver(encoding.formula, self.look, glucose=True)
+        self.solver = Solver(encoding.formula, self.look, glucose=True, watch=watch)
         self.delay = 0
         self.horizon = 0
         self.best: Sequence[Plan] | None = None

@@ -1,10 +1,14 @@
 """CaDiCaL and Glucose, through python-sat, under a deadline: some conflicts, then a look at the clock.
 
-Glucose is faster where a formula grows and is asked again and again; CaDiCaL writes proofs.
+Glucose is faster where a formula grows and is asked again and again; CaDiCaL writes proofs. Glucose counts conflicts
+only where it restarts, which may be ten seconds later, so in a long search it has a thread, and the clock is read
+meanwhile.
 """
 
 from collections.abc import Callable, Sequence
 from itertools import count
+from queue import Empty, SimpleQueue
+from threading import Thread
 from time import monotonic_ns
 
 from carp_verify.optimum.clauses import Formula, Literal
@@ -14,6 +18,10 @@ LONGEST = 10**9  # more seconds than anybody waits
 CONFLICTS_BETWEEN_LOOKS = 300
 PROPAGATIONS_OF_CONFLICT = 650
 """How many propagations take as long as a conflict: about the same on grids of 6 x 6, 8 x 8 and 20 x 20."""
+CONFLICTS_BEFORE_THREAD = 2000
+"""Short searches need no thread, which would take half as long again there."""
+PATIENCE = 0.1
+"""Seconds between two looks at the clock while Glucose works."""
 
 
 class TimeOver(Exception):  # noqa: N818 - no error: the limit that the user gave
@@ -63,11 +71,17 @@ def clock_of(check: Callable[[], None]) -> Callable[[], int]:
 class Solver:
     """A solver for a growing formula. Its answers do not depend on the clock.
 
-    `look` is called every few conflicts and may end the search by raising `TimeOver`.
+    `look` is called every few conflicts and may end the search by raising `TimeOver`; so may `watch`, which is called
+    as time goes by, and is `look` where it is not given.
     """
 
     def __init__(
-        self, formula: Formula, look: Callable[[], None], with_proof: bool = False, glucose: bool = False
+        self,
+        formula: Formula,
+        look: Callable[[], None],
+        with_proof: bool = False,
+        glucose: bool = False,
+        watch: Callable[[], None] | None = None,
     ) -> None:
         from pysat.solvers import Cadical195, Glucose4  # noqa: PLC0415 - slow to load
 
@@ -75,6 +89,12 @@ class Solver:
         self.look = look
         self._solver = Glucose4() if glucose else Cadical195(with_proof=with_proof)
         self._sent = 0
+        self._watch = watch or look
+        self._asked: SimpleQueue[list[Literal] | None] = SimpleQueue()
+        self._answers: SimpleQueue[bool | None] = SimpleQueue()
+        self._in_thread = glucose
+        if glucose:
+            Thread(target=self._work, daemon=True).start()
 
     def satisfiable(self, assumptions: Sequence[Literal], conflicts: int | None = None) -> bool | None:
         """Whether the formula has a model in which the assumptions hold; `None` if these conflicts do not decide."""
@@ -86,10 +106,31 @@ class Solver:
         while answer is None and (conflicts is None or spent < conflicts):
             self.look()
             self._solver.conf_budget(CONFLICTS_BETWEEN_LOOKS)
-            # An interrupt waits for these conflicts: the solver's own handler would now and then swallow it.
-            answer = self._solver.solve_limited(assumptions=list(assumptions), expect_interrupt=True)
+            answer = self._answer(list(assumptions))
             spent += CONFLICTS_BETWEEN_LOOKS
         return answer
+
+    def _answer(self, assumptions: list[Literal]) -> bool | None:
+        """The solver's answer to some conflicts more."""
+        if not self._in_thread or self.conflicts < CONFLICTS_BEFORE_THREAD:
+            return self._solved(assumptions)
+        self._asked.put(assumptions)
+        while True:
+            try:
+                return self._answers.get(timeout=PATIENCE)
+            except Empty:
+                self._watch()
+
+    def _solved(self, assumptions: list[Literal]) -> bool | None:
+        # An interrupt waits for these conflicts: the solver's own handler would now and then swallow it.
+        answer: bool | None = self._solver.solve_limited(assumptions=assumptions, expect_interrupt=True)
+        return answer
+
+    def _work(self) -> None:
+        """Answer what is asked until nothing more is, and free the solver."""
+        while (assumptions := self._asked.get()) is not None:
+            self._answers.put(self._solved(assumptions))
+        self._solver.delete()
 
     @property
     def conflicts(self) -> int:
@@ -116,5 +157,9 @@ class Solver:
         return list(self._solver.get_proof() or [])
 
     def close(self) -> None:
-        """Free the solver."""
-        self._solver.delete()
+        """Free the solver. One in a thread ends its work first, which nobody need wait for."""
+        if self._in_thread:
+            self._solver.interrupt()
+            self._asked.put(None)
+        else:
+            self._solver.delete()
