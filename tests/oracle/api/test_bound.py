@@ -1,6 +1,8 @@
 """`bound` and `verify-bound`."""
 
 from collections.abc import Callable
+from pathlib import Path
+from time import process_time
 
 import pytest
 from msgspec import to_builtins
@@ -8,6 +10,8 @@ from tests.oracle.running import HEAD_ON, Run, corridor, save
 
 from carp_optimum.bound import Progress
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
+from carp_spec.documents.instances import write_instance
+from carproof.generate import Fleet, Grid, Range, grid_instance
 
 EMPTY = BoundDocument(BOUND_FORMAT, "", 0, 1, 0, (), (), (), ())
 
@@ -25,6 +29,18 @@ def test_a_robot_without_a_way_is_told(carproof: Run) -> None:
     verified = carproof("verify islands.json certificate.json")
     assert verified.code == 0
     assert verified.stdout.splitlines()[-1] == "robot r1 has no way to its goal: the bound is that of the others"
+
+
+def test_stops_of_a_robot_alone_and_of_very_many_are_bounded_in_the_time(carproof: Run) -> None:
+    """The shortest paths alone are a bound; a judgement of all their plans once took a minute before the first look."""
+    for robots, size in ((1, 4), (500, 40)):
+        fleet = Fleet(robots, orders="pick-and-drop", service=Range(1, 2))
+        Path("orders.json").write_bytes(write_instance(grid_instance(Grid(size, size), fleet)))
+        started = process_time()
+        outcome = carproof("bound orders.json --seconds 1")
+        assert process_time() - started < 5
+        assert outcome.code == 0
+        assert outcome.stdout.splitlines()[-1].split()[0] == str(robots)
 
 
 @pytest.mark.parametrize(
