@@ -42,9 +42,13 @@ def show_solution(
 
 
 def show_found(instance: Instance, found: "Found", planner: str, seconds: float) -> None:
-    """Print what was found within a time, in no time: of robots that are left out nobody asks why."""
-    unplanned = found.solution.unplanned
+    """Print what was found within a time."""
     _show_row(instance, found.solution, planner, found.shortest, seconds)
+    show_not_found(found.solution.unplanned)
+
+
+def show_not_found(unplanned: Sequence[RobotId]) -> None:
+    """Print the robots that are left out within a time, in no time: nobody asks why."""
     for robot in unplanned[:MOST_LISTED]:
         print_line(f"unplanned: robot {robot}: no plan was found for it in this time")
     if len(unplanned) > MOST_LISTED:

@@ -12,12 +12,17 @@ HARDLY_ANY = 1e-3
 """The seconds that a search gets where none are left, as it refuses 0."""
 
 
-def time_left(context: click.Context, seconds: float | None, compiling: float = 0.0) -> float | None:
-    """What is left of the seconds of the command, not counting those of `compiling`; wrong ones stay, to be refused."""
+def time_left(
+    context: click.Context, seconds: float | None, compiling: float = 0.0, judging: float = 0.0
+) -> float | None:
+    """What is left of the seconds of the command, not counting those of `compiling`; wrong ones stay, to be refused.
+
+    The answer is judged in `judging` seconds.
+    """
     if seconds is None or not seconds > 0:
         return seconds
     started: float = context.find_root().obj
-    return max(seconds + compiling - (perf_counter() - started) - ENDING, HARDLY_ANY)
+    return max(seconds + compiling - (perf_counter() - started) - judging - ENDING, HARDLY_ANY)
 
 
 def time_of_compiling() -> float:

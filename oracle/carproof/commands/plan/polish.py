@@ -13,7 +13,7 @@ from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, Output, naming, read_file
 from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import gives_plans, listed, now_option
-from carproof.command_line.output import show_unplanned
+from carproof.command_line.output import show_not_found, show_unplanned
 from carproof.command_line.tables import print_table
 from carproof.command_line.time_left import time_left, time_of_compiling
 from carproof.engines import engine_named, repaired, sum_of_shortest_paths
@@ -70,8 +70,10 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     require_polish_options(iterations, seconds, seed)
     require_tick(now)
     instance, given, _ = problem.read()
+    judging = perf_counter()
     with naming(problem.solution or ""):
         before = sound_solution(instance, given)
+    judging = perf_counter() - judging
     least = bound_of(instance, bound)
     played = 0
     compiling = 0.0 if seconds is None else time_of_compiling()
@@ -84,7 +86,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
             show(rounds, found_so_far(total, least, unplanned))
 
         polish = engine_named(engine).polish
-        left = time_left(context, seconds, compiling)
+        left = time_left(context, seconds, compiling, judging)  # the new plans take as long to judge
         after = polish(instance, before, iterations=iterations, seconds=left, seed=seed, now=now, advance=advance)
         if seconds is None and now == 0:
             after = repaired(instance, after)
@@ -94,7 +96,10 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     if output.write(write_solution(after)):
         rows = [_row("given", instance, before, least), _row("polished", instance, after, least)]
         print_table(COLUMNS, [[*rows[0], "", ""], [*rows[1], played, f"{time:.2f} s"]], numbers=COLUMNS[1:])
-        show_unplanned(instance, after, after.unplanned)
+        if seconds is None:
+            show_unplanned(instance, after, after.unplanned)
+        else:
+            show_not_found(after.unplanned)
     return Answer.of(not after.unplanned)
 
 
