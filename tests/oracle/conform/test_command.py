@@ -19,7 +19,7 @@ def test_carproof_conforms_to_its_strictest_level(process: Run, engine: list[str
     """On a machine that is busy too, where the time for large cases ends before the first one is answered."""
     patient = ["--timeout", "120", "--large", "2"]
     outcome = process("conform", "--level", "exact", "--examples", "60", *patient, "--", *SERVE, *engine)
-    assert outcome.code == 0, outcome
+    assert outcome.code == 0, outcome.stdout
     claim, extent = outcome.stdout.splitlines()[-2:]
     assert claim.startswith("CONFORMS: carproof ")
     assert re.search(r"level exact \(the plans are carproof's, visit for visit\), tested on \d\d+ answers\.", claim)
