@@ -23,7 +23,7 @@ from carp_optimum.lagrangian.price_search import PriceSearch
 from carp_optimum.sat.proving import short_refutation
 from carp_optimum.sat.solver import Solver
 from carp_verify.optimum.clauses import Clause, Formula, Literal
-from carp_verify.optimum.encoding import Encoding, violated
+from carp_verify.optimum.encoding import Conflict, Encoding, Exchange, violated
 
 STEPS = 120
 SHARES = (0, 12, 24, 36, 48, 60, 80)
@@ -144,12 +144,30 @@ class _Cores:
 
     def keeps(self, position: int, delay: int) -> Literal:
         """The literal that the robot has no larger delay; its clauses hold if it is present."""
-        robot, clauses = self.encoding.robots[position], self.encoding.formula.clauses
-        known = len(clauses)
+        robot, formula = self.encoding.robots[position], self.encoding.formula
+        clauses, variables = len(formula.clauses), formula.variables
         while robot.horizon < delay:
             robot.grow()
-        clauses[known:] = [(*clause, -self.present[position]) for clause in clauses[known:]]
+        formula.clauses[clauses:] = [(*clause, -self.present[position]) for clause in formula.clauses[clauses:]]
+        self.note_new(position, variables)
         return -robot.late[delay]
+
+    def forbid(self, meeting: Conflict | Exchange) -> None:
+        """Forbid the meeting to all robots; the variables that say that a robot takes part are about that robot."""
+        encoding = self.encoding
+        for position in range(len(encoding.robots)):
+            variables = encoding.formula.variables
+            if isinstance(meeting, Conflict):
+                encoding.presence(position, meeting.constraint, meeting.tick, self.instance.gap)
+            else:
+                encoding.moves(position, *meeting.one, meeting.tick)
+                encoding.moves(position, *meeting.other, meeting.tick)
+            self.note_new(position, variables)
+        encoding.forbid(meeting)
+
+    def note_new(self, position: int, variables: int) -> None:
+        """Note that those after so many variables are about the robot."""
+        self.robot_of |= dict.fromkeys(range(variables + 1, self.encoding.formula.variables + 1), position)
 
     def part(self, robots: Iterable[int]) -> "_Part":
         """The clauses about these robots alone."""
@@ -161,14 +179,11 @@ class _Cores:
     def share_out(self, part: "_Part") -> None:
         """Note about which robots the new clauses are, and add them to the formulas.
 
-        A variable is about the robot of the first clause that has it and is about one robot alone.
+        The variables of a sum are about no robot, so a clause of it is about the robots that it names, or about none.
         """
         clauses = self.encoding.formula.clauses
         for clause in clauses[self.sorted :]:
-            variables = [*map(abs, clause)]
-            about = frozenset(self.robot_of[each] for each in variables if each in self.robot_of)
-            if len(about) == 1:
-                self.robot_of |= dict.fromkeys(variables, *about)
+            about = frozenset(self.robot_of[each] for each in map(abs, clause) if each in self.robot_of)
             self.about[about].append(clause)
             self.whole.take(about, [clause])
             if part is not self.whole:
@@ -197,7 +212,7 @@ class _Cores:
             if not meetings:
                 return None
             for meeting in meetings:
-                self.encoding.forbid(meeting)
+                self.forbid(meeting)
 
     def disjoint(self, delays: Iterable[int]) -> Iterable[tuple["_Part", Allowed]]:
         """Cores that have no robot in common, of the robots with these delays, each with the clauses about its own."""

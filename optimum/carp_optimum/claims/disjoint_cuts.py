@@ -20,7 +20,8 @@ from carp_verify.bound.cuts import group_of
 from carp_verify.optimum.encoding import beat_formula
 
 LARGEST_GROUP = 8
-MOST_MEETINGS = 10_000  # violations of a rule from which pairs of groups are taken
+MOST_MEETINGS = 10_000
+"""Violations of a rule from which pairs of groups are taken. The search ends if none of them is of such a pair."""
 LONGEST_REFUTATION = 1_000_000  # characters
 
 
@@ -92,7 +93,8 @@ def _meetings(instance: Instance, groups: Sequence[Group], look: Callable[[], No
     """
     number = {robot: position for position, group in enumerate(groups) for robot in group.robots}
     near: set[tuple[int, int]] = set()
-    for violation in violations_of(instance, [plan for each in groups for plan in each.plans], MOST_MEETINGS):
+    plans = [plan for each in groups if len(each.robots) < LARGEST_GROUP for plan in each.plans]
+    for violation in violations_of(instance, plans, MOST_MEETINGS):
         near.update(combinations(sorted({number[robot] for robot in violation.robots}), 2))
         look()
     sizes = [len(each.robots) for each in groups]

@@ -90,11 +90,10 @@ class Solver:
         self._solver = Glucose4() if glucose else Cadical195(with_proof=with_proof)
         self._sent = 0
         self._watch = watch or look
+        self._may_need_thread = glucose
+        self._has_thread = False
         self._asked: SimpleQueue[list[Literal] | None] = SimpleQueue()
         self._answers: SimpleQueue[bool | None] = SimpleQueue()
-        self._in_thread = glucose
-        if glucose:
-            Thread(target=self._work, daemon=True).start()
 
     def satisfiable(self, assumptions: Sequence[Literal], conflicts: int | None = None) -> bool | None:
         """Whether the formula has a model in which the assumptions hold; `None` if these conflicts do not decide."""
@@ -112,8 +111,11 @@ class Solver:
 
     def _answer(self, assumptions: list[Literal]) -> bool | None:
         """The solver's answer to some conflicts more."""
-        if not self._in_thread or self.conflicts < CONFLICTS_BEFORE_THREAD:
+        if not self._may_need_thread or self.conflicts < CONFLICTS_BEFORE_THREAD:
             return self._solved(assumptions)
+        if not self._has_thread:
+            self._has_thread = True
+            Thread(target=self._work, daemon=True).start()
         self._asked.put(assumptions)
         while True:
             try:
@@ -158,7 +160,7 @@ class Solver:
 
     def close(self) -> None:
         """Free the solver. One in a thread ends its work first, which nobody need wait for."""
-        if self._in_thread:
+        if self._has_thread:
             self._solver.interrupt()
             self._asked.put(None)
         else:

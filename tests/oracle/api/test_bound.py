@@ -32,7 +32,7 @@ def test_a_robot_without_a_way_is_told(carproof: Run) -> None:
 
 
 def test_stops_of_a_robot_alone_and_of_very_many_are_bounded_in_the_time(carproof: Run) -> None:
-    """The shortest paths alone are a bound; a judgement of all their plans once took a minute before the first look."""
+    """The shortest paths alone are a bound; by formulas, they took 15 s for 500 robots before the first look."""
     for robots, size in ((1, 4), (500, 40)):
         fleet = Fleet(robots, orders="pick-and-drop", service=Range(1, 2))
         Path("orders.json").write_bytes(write_instance(grid_instance(Grid(size, size), fleet)))

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
-from tests.oracle.running import TWO, TWO_PLANNED, Run, save, solution
+from tests.oracle.running import BEHIND, EAST, TWO, TWO_PLANNED, Run, corridor, save, solution
 
 from carproof import polish, read_instance, read_solution, total_cost
 from carproof.engines import engine_named
@@ -51,3 +51,10 @@ def test_for_a_time_the_command_python_and_the_op_improve_plans(carproof: Run) -
 def test_an_engine_keeps_to_rounds_that_never_raise_the_total(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("carp_optimized.improve.annealing.polish_or_anneal", None)
     assert carproof("polish town.json late.json --seconds 0.1 --engine optimized").code == 0
+
+
+def test_nobody_asks_after_the_time_why_robots_are_left_out(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    """To ask takes a query for each robot: seconds in a large fleet."""
+    save(three=corridor([EAST, BEHIND, {**EAST, "id": "r3"}]))
+    monkeypatch.setattr("carproof.command_line.output.have_plans_beside", None)
+    assert carproof("polish three.json late.json --seconds 0.1").code == 1
