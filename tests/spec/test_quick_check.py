@@ -21,7 +21,7 @@ from carproof.testing.mutations import MUTATIONS
 from carproof.testing.strategies import PlannedInstance, broken_solutions, instances, planned_instances
 from carproof.testing.vectors import vectors
 
-KNOWN = replace(SIZES, groups=0, stops=1, service=0)
+KNOWN = replace(SIZES, groups=0)
 
 
 def test_no_broken_vector_passes() -> None:
