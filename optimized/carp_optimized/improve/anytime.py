@@ -3,8 +3,8 @@
 Robots that move a step a tick (classical MAPF) are planned by `carp_optimized.improve.planning`, which looks at the
 clock after each few milliseconds. All others are planned by CARP, the shortest way first, as long as there is time; if
 some get no plan, once more, where each holds its start until it is planned. Then follow a repair and an annealing, if
-there is enough time for these, or else passes with those first that failed. In the end plans are settled. Nothing here
-is trusted: the law judges the plans.
+there is enough time for these, or else passes with those first that failed. In the end plans are settled, if there is
+time. Nothing here is trusted: the law judges the plans.
 """
 
 from collections.abc import Callable
@@ -31,7 +31,7 @@ SECONDS = 10.0
 ENOUGH = 4
 """The annealing begins if CARP has left this many times its own time, as it takes up the plans again."""
 AGAIN = 2
-"""With less, passes and settling follow if CARP has left this many times its own time."""
+"""With less, plans are settled in half of the rest if CARP has left this many times its own time."""
 
 
 def plan_within(
@@ -65,7 +65,12 @@ def plan_within(
     if found is not None:
         return found
     visit = 0.0 if seconds is None else time_of_visit(instance, clock, finish)
-    solution = _first_plans(instance, lambda: clock() - started, seconds, visit)
+    fleet = PlannedFleet(instance)
+    fleet.ticks_to_goal(0)  # loads machine code, whose time does not count as that of the first plans
+    if seconds is not None:
+        seconds -= clock() - started
+    started = clock()
+    solution = _first_plans(fleet, lambda: clock() - started, seconds, visit)
     if seconds is None:
         solution = carp_optimized.polish(instance, solution, iterations=iterations, seed=seed, advance=advance)
         return Found(settled(instance, solution), None)
@@ -73,30 +78,32 @@ def plan_within(
     left = seconds - visit * sum(len(each.visits) for each in solution.plans)
     if left > (1 + ENOUGH) * spent:
         solution = anneal(instance, solution, left - spent, seed=seed, advance=advance, clock=clock)
-    elif left > AGAIN * spent:
-        if solution.unplanned:
-            solution = plan_failed_first(instance, solution, lambda: 2 * (clock() - started) < left + spent)
+        return Found(solution, None)
+    settles = left > AGAIN * spent
+    if solution.unplanned:
+        ends = (left + spent) / 2 if settles else left
+        solution = plan_failed_first(instance, solution, lambda: clock() - started < ends)
+    if settles:
         solution = settled(instance, solution, lambda: clock() - started < left)
     return Found(solution, None)
 
 
-def _first_plans(instance: Instance, spent: Callable[[], float], seconds: float | None, visit: float) -> Solution:
+def _first_plans(fleet: PlannedFleet, spent: Callable[[], float], seconds: float | None, visit: float) -> Solution:
     """The plans of CARP, the shortest way first, for as many robots as there is time for."""
 
     def goes_on(visits: int) -> bool:
         return seconds is None or spent() + visit * visits < seconds
 
-    fleet = PlannedFleet(instance)
     order = nearest_first(fleet)
     for robot in order:
         if not goes_on(fleet.visits):
             break
         plan_again(fleet, robot)
     if len(fleet.order) < len(order) and (seconds is None or 2 * spent() < seconds):
-        other = plan_holding_starts(instance, order, goes_on)
+        other = plan_holding_starts(fleet.instance, order, goes_on)
         if len(other.plans) > len(fleet.order):
             return other
-    return Solution.of(instance, fleet.plans)
+    return Solution.of(fleet.instance, fleet.plans)
 
 
 def nearest_first(fleet: PlannedFleet) -> list[int]:
