@@ -10,12 +10,18 @@ from tests.spec.making import grid, line
 from tests.verify.optimum.test_optimum import turned_ring
 
 from carp_optimum.sat.heuristics import ever_better, plans_of_all
-from carp_optimum.sat.solver import TimeOver
+from carp_optimum.sat.solver import Deadline, TimeOver, clock_of
 from carp_reference import plan
 from carp_spec import Carp, Instance, Robot, Solution, judge
+from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import Sizes, instances
 
 SMALL = Sizes(resources=6, robots=4, capacity=2, duration=3, release=3, pace=2)
+
+
+def forty_looks() -> Deadline:
+    """The time until a clock was looked at forty times."""
+    return Deadline(40, clock_of(nothing))
 
 
 @pytest.fixture(params=[False, True], ids=["read", "run"])
@@ -28,7 +34,7 @@ def _engine(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> 
 @settings(max_examples=draws(100), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(instances(SMALL))
 def test_the_plans_are_sound_and_of_all_robots(instance: Instance) -> None:
-    plans = plans_of_all(instance, [*instance.robot], nothing)
+    plans = plans_of_all(instance, [*instance.robot], forty_looks())
     if plans is not None:
         verdict = judge(instance, Solution(tuple(plans), tuple(each.robot for each in plans)))
         assert (verdict.violations, verdict.unplanned) == ((), 0)
@@ -40,27 +46,21 @@ def test_the_plans_are_sound_and_of_all_robots(instance: Instance) -> None:
 def test_a_robot_that_found_no_plan_is_planned_earlier(instance: Instance) -> None:
     backwards = Instance(instance.graph, instance.robots[::-1], instance.after_goal)
     assume(any(not plan(each, Carp()).unplanned for each in (instance, backwards)))
-    assert plans_of_all(instance, [*instance.robot], nothing) is not None
+    assert plans_of_all(instance, [*instance.robot], forty_looks()) is not None
 
 
 @pytest.mark.usefixtures("_engine")
-def test_what_was_found_before_the_end_of_the_time_is_kept() -> None:
+def test_there_is_nothing_to_find_where_the_time_is_over() -> None:
     instance = turned_ring(3)
-    looks = 0
-
-    def check() -> None:
-        nonlocal looks
-        looks += 1
-        if looks > len(instance.robots) + 1:
-            raise TimeOver
-
-    assert plans_of_all(instance, [*instance.robot], check) is not None
+    assert plans_of_all(instance, [*instance.robot], forty_looks()) is not None
+    many = grid_instance(Grid(30, 30), Fleet(200))
+    assert plans_of_all(many, [*many.robot], Deadline(0, clock_of(nothing))) is None
 
 
 def test_numbers_that_the_arrays_do_not_hold_are_planned_by_the_reference() -> None:
     for release in (2**31, 0):
         instance = Instance(line("abc", a=2**29, b=2**29), (Robot("r", "a", "c", release), Robot("s", "b", "c")))
-        assert plans_of_all(instance, [*instance.robot], nothing) is not None
+        assert plans_of_all(instance, [*instance.robot], forty_looks()) is not None
 
 
 @pytest.mark.parametrize(("pace", "last"), [(1, 50), (2, 0)])

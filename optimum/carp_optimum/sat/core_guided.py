@@ -28,7 +28,7 @@ from time import monotonic_ns
 from typing import TYPE_CHECKING
 
 from carp_optimum.sat.between import Between
-from carp_optimum.sat.heuristics import plans_of_all
+from carp_optimum.sat.heuristics import plans_of_all, sum_of_shortest_paths
 from carp_optimum.sat.solver import Deadline, Solver, TimeOver
 from carp_spec import Instance, Plan, Refusal, Solution, judge, total_cost
 from carp_spec.inputs.options import require_limits
@@ -50,7 +50,10 @@ CONFLICTS_BETWEEN_RESULTS = 2000
 """After this many conflicts the search asks for what was found beside it."""
 DELAY_OF_DOUBT = 20  # ticks of all robots together, at which it is asked whether there are any plans
 PARTS = 5
-"""A search of which one of this many parts of the time is over plans with heuristics, for as long again."""
+"""A search of which one of this many parts of the time is over plans with heuristics, for as long again.
+
+If its formula is not made by then, it plans for the rest of the time.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,12 +93,36 @@ def core_guided(
     require_limits(limit=limit)
     deadline = Deadline(limit, clock)
     try:
-        encoding = Encoding(instance, deadline.check)
+        encoding = Encoding(instance, deadline.part(PARTS).check)
     except TimeOver:
-        return Optimum(None, None, 0, decided=False, solution=None, evidence=Evidence((), ()))
+        return _planned(instance, deadline)
     is_known = goals_stand_alone(instance) and not instance.graph.groups
     with closing(CoreGuided(encoding, deadline, start_beside if is_known else None, watch)) as search:
         return search.run()
+
+
+def _planned(instance: Instance, deadline: Deadline) -> Optimum:
+    """The shortest paths of a fleet whose formula takes too long, and plans made in the rest of the time.
+
+    Plans that cost no more than these paths are the optimum.
+    """
+    shortest = sum_of_shortest_paths(instance, deadline.part(PARTS).check)
+    plans = plans_of_all(instance, [*instance.robot], deadline)
+    cost = None if plans is None else total_cost(instance, plans)
+    solution = None if plans is None else _solution(instance, plans)
+    robots = range(len(instance.robots))
+    evidence = Evidence((0,) * len(robots), tuple(robots))
+    is_least = cost is not None and cost == shortest
+    return Optimum(shortest, cost, shortest or 0, decided=is_least, solution=solution, evidence=evidence)
+
+
+def _solution(instance: Instance, plans: Sequence[Plan]) -> Solution:
+    """The solution with these plans; raises `ContradictionError` if they break the law."""
+    solution = Solution(tuple(plans), tuple(plan.robot for plan in plans))
+    verdict = judge(instance, solution)
+    if verdict.violations or verdict.unplanned:
+        raise ContradictionError("the search has found plans that break a rule")
+    return solution
 
 
 class CoreGuided:
@@ -251,7 +278,7 @@ class CoreGuided:
             self.has_tried_heuristics = True
             longest_first = sorted(self.encoding.robots, key=lambda robot: -(robot.shortest or 0))
             order = [robot.robot.id for robot in longest_first]
-            self.best = plans_of_all(self.instance, order, self.deadline.part(PARTS).check)
+            self.best = plans_of_all(self.instance, order, self.deadline.part(PARTS))
         self.deadline.check()
 
     @property
@@ -275,7 +302,7 @@ class CoreGuided:
         """The answer that these plans are the best."""
         cost = total_cost(self.instance, plans)
         require_kept(self.lower, cost)
-        solution = self.solution(plans)
+        solution = _solution(self.instance, plans)
         return Optimum(self.encoding.shortest, cost, cost, decided=True, solution=solution, evidence=self.evidence)
 
     def unsolvable(self, obstacle: Obstacle) -> Optimum:
@@ -290,13 +317,5 @@ class CoreGuided:
         cost = known.total
         if cost is not None:
             require_kept(self.lower, cost)
-        solution = None if known.plans is None else self.solution(known.plans)
+        solution = None if known.plans is None else _solution(self.instance, known.plans)
         return Optimum(self.encoding.shortest, cost, self.lower, cost == self.lower, solution, self.evidence)
-
-    def solution(self, plans: Sequence[Plan]) -> Solution:
-        """The solution with these plans; raises `ContradictionError` if they break the law."""
-        solution = Solution(tuple(plans), tuple(plan.robot for plan in plans))
-        verdict = judge(self.instance, solution)
-        if verdict.violations or verdict.unplanned:
-            raise ContradictionError("the search has found plans that break a rule")
-        return solution

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
+from functools import partial
 
 from carp_optimized.orderings import carp
-from carp_optimum.sat.solver import TimeOver
-from carp_spec import Instance, Plan, Refusal, RobotId, Solution, total_cost
+from carp_optimum.sat.solver import Deadline, TimeOver
+from carp_spec import Instance, Plan, Refusal, RobotId, Solution, judge, total_cost
 
-POLISHES, ROUNDS_OF_POLISH = 50, 200
+BETWEEN_LOOKS = 16  # robots whose shortest paths are found between two looks at the clock
 PASSES = 20  # of CARP, each with the robots first that the one before left out
 STARTS = 6  # seeds of annealing
 ROUNDS, ROUNDS_OF_CROWD = 100_000, 30_000
@@ -16,41 +17,52 @@ WORK_OF_ANNEALING = 150_000
 """The propagations of an annealing, for each robot."""
 
 
-def plans_of_all(instance: Instance, order: Sequence[RobotId], check: Callable[[], None]) -> Sequence[Plan] | None:
-    """Plans of all robots by the neighbourhood planner, polished; `None` if none are found.
+def plans_of_all(instance: Instance, order: Sequence[RobotId], deadline: Deadline) -> Sequence[Plan] | None:
+    """The best plans of all robots until the deadline; `None` if none are found.
 
-    Where its code is not compiled yet, they are those of CARP, at first in this order, as compiling would take longer
-    than many a limit. `check` may end the search by `TimeOver`; what was found by then is kept.
+    Where the planner's code is not compiled yet, they are those of CARP, at first in this order, as compiling would
+    take longer than many a limit.
     """
+    from carp_optimized.improve.annealing import BRIEF  # noqa: PLC0415 - slow to load
+    from carp_optimized.improve.anytime import plan_within  # noqa: PLC0415
+
+    with suppress(TimeOver):
+        if _is_compiled():
+            with suppress(Refusal):  # numbers that only the reference holds
+                left, judging = max(deadline.left(), BRIEF), partial(judge, instance)
+                found = plan_within(instance, seconds=left, clock=deadline.clock, finish=judging).solution
+                return None if found.unplanned else found.plans
+        return _in_some_order(instance, order, deadline.check)
+    return None
+
+
+def sum_of_shortest_paths(instance: Instance, check: Callable[[], None]) -> int | None:
+    """The sum of the robots' costs if each were alone, one without a way left out.
+
+    `None` if `check` ends the search for them by `TimeOver`, or where the planner's code is not compiled yet.
+    """
+    from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - slow to load
+
+    total = 0
+    with suppress(TimeOver, Refusal):
+        if _is_compiled():
+            fleet = PlannedFleet(instance)
+            for robot in range(len(instance.robots)):
+                if robot % BETWEEN_LOOKS == 0:
+                    check()
+                total += fleet.ticks_to_goal(robot)
+            return total
+    return None
+
+
+def _is_compiled() -> bool:
     from carp_optimized.jit.compiling import is_cached  # noqa: PLC0415 - slow to load
     from carp_optimized.neighbourhood.adding import add_robot  # noqa: PLC0415
 
-    found: list[Sequence[Plan]] = []
-    with suppress(TimeOver):
-        if is_cached(add_robot):
-            with suppress(Refusal):  # numbers that only the reference holds
-                found.extend(_polished(instance, check))
-        if not found:
-            found.extend(_in_some_order(instance, order, check))
-    return found[-1] if found else None
+    return is_cached(add_robot)
 
 
-def _polished(instance: Instance, check: Callable[[], None]) -> Iterator[Sequence[Plan]]:
-    """Ever better plans of all robots."""
-    import carp_optimized  # noqa: PLC0415 - slow to load
-
-    solution = carp_optimized.plan(instance, advance=check)
-    for seed in range(POLISHES):
-        if not solution.unplanned:
-            yield solution.plans
-        solution = carp_optimized.polish(
-            instance, solution, iterations=ROUNDS_OF_POLISH, seed=seed, advance=lambda *_: check()
-        )
-    if not solution.unplanned:
-        yield solution.plans
-
-
-def _in_some_order(instance: Instance, order: Sequence[RobotId], check: Callable[[], None]) -> Iterator[Sequence[Plan]]:
+def _in_some_order(instance: Instance, order: Sequence[RobotId], check: Callable[[], None]) -> Sequence[Plan] | None:
     """The plans of CARP, if there are any: pass after pass, with the robots first that the one before left out."""
     import carp_reference  # noqa: PLC0415 - slow to load
 
@@ -62,9 +74,9 @@ def _in_some_order(instance: Instance, order: Sequence[RobotId], check: Callable
             if plan is not None:
                 plans.append(plan)
         if len(plans) == len(order):
-            yield plans
-            return
+            return plans
         order = sorted(order, key={plan.robot for plan in plans}.__contains__)
+    return None
 
 
 def ever_better(instance: Instance, look: Callable[[], None]) -> Iterator[tuple[int, Sequence[Plan]]]:

@@ -48,6 +48,14 @@ class Deadline:
         """Whether one of a number of equal parts of the time until it has gone by."""
         return (self._clock() - self._start) * of >= self._end - self._start
 
+    def clock(self) -> float:
+        """Its clock, in seconds."""
+        return self._clock() / NANOSECONDS
+
+    def left(self) -> float:
+        """The seconds until it, or fewer than 0."""
+        return (self._end - self._clock()) / NANOSECONDS
+
     def part(self, of: int) -> "Deadline":
         """A deadline after one of a number of equal parts of the same time, from now."""
         return Deadline((self._end - self._start) / NANOSECONDS / of, self._clock)

@@ -1,6 +1,7 @@
 """The time of a whole command: from its start to the last line that it prints."""
 
 from time import perf_counter
+from typing import overload
 
 import click
 
@@ -10,6 +11,16 @@ ENDING = 0.05
 """The seconds that it takes to print the answer, and to end."""
 HARDLY_ANY = 1e-3
 """The seconds that a search gets where none are left, as it refuses 0."""
+
+
+@overload
+def time_left(context: click.Context, seconds: float, compiling: float = ..., judging: float = ...) -> float: ...
+
+
+@overload
+def time_left(
+    context: click.Context, seconds: float | None, compiling: float = ..., judging: float = ...
+) -> float | None: ...
 
 
 def time_left(

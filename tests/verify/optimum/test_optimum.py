@@ -1,12 +1,16 @@
 import time
 from collections.abc import Iterator
 from itertools import count
+from pathlib import Path
 
 import pytest
 from tests.spec.making import grid, row
 
+from carp_optimum.bound import lower_bound
 from carp_optimum.optimum import optimum
+from carp_optimum.sat.proving import write_proof
 from carp_spec import AfterGoal, Instance, Refusal, Resource, ResourceGraph, Robot, judge
+from carp_verify.optimum.proof import verify_proof
 from carp_verify.optimum.unsolvable import describe
 from carproof.generate import Fleet, Grid, grid_instance
 
@@ -68,7 +72,7 @@ def test_the_search_ends_with_the_first_look_at_the_clock_behind_the_limit() -> 
         reported.append(next(ticks))
         return reported[-1]
 
-    ticks = clock_of(0.01)
+    ticks = clock_of(0.005)
     best = optimum(instance, 3, clock)
     assert not best.decided
     assert [tick >= 3_000_000_000 for tick in reported].count(True) <= 2
@@ -90,6 +94,25 @@ def test_an_undecided_search_leaves_the_best_plans_found_and_a_bound(
     verdict = judge(instance, best.solution)
     assert (verdict.violations, verdict.unplanned, verdict.cost) == ((), 0, best.cost)
     assert best.cost > best.lower > (best.shortest or 0)
+
+
+def test_a_fleet_whose_formula_takes_too_long_is_planned_in_the_rest_of_the_time() -> None:
+    ticks = clock_of(0.1)
+    instance = grid_instance(Grid(12, 12), Fleet(60, after_goal="park"))
+    best = optimum(instance, 20, lambda: next(ticks))
+    assert best.solution is not None
+    assert judge(instance, best.solution).cost == best.cost
+    assert best.lower == best.shortest == lower_bound(instance, steps=0).bound
+    assert not best.decided
+
+
+def test_shortest_paths_that_break_no_rule_are_an_optimum_without_a_formula(tmp_path: Path) -> None:
+    ticks = clock_of(0.1)
+    instance = on_grid(16, *(Robot(y, f"0,{y}", f"1,{y}") for y in range(16)))
+    best = optimum(instance, 6, lambda: next(ticks))
+    assert (best.decided, best.cost, best.lower) == (True, 16, 16)
+    write_proof(instance, best, tmp_path / "proof", LONG)
+    assert verify_proof(tmp_path / "proof").cost == 16
 
 
 @pytest.mark.parametrize("limit", [0, 1])

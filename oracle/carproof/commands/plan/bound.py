@@ -12,7 +12,7 @@ from carproof.command_line.files import InputFile, Output, naming
 from carproof.command_line.foreign import MovingAI, Problem, benchmark_options, from_option, read_solution_of
 from carproof.command_line.options import listed, output_options
 from carproof.command_line.tables import print_line, print_table
-from carproof.engines import warm
+from carproof.command_line.time_left import time_left, time_of_compiling
 from carproof.extras import require
 from carproof.progress import found_so_far, gap, search_progress
 
@@ -31,13 +31,15 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "total cost", "gap", "step
 @click.argument("instance", type=InputFile(), required=False)
 @benchmark_options
 @click.option(
-    "--seconds", type=click.IntRange(min=1), help=f"For how long to search at most.  [default: {BOUND_SECONDS}]"
+    "--seconds", type=click.IntRange(min=1), help=f"The time of the whole command.  [default: {BOUND_SECONDS}]"
 )
 @click.option("--steps", type=click.IntRange(min=0), help="End after this many steps, whatever time they take.")
 @click.option("--plans", type=InputFile(), help="A solution in any format, whose total is set against the bound.")
 @from_option
 @output_options
+@click.pass_context
 def command(  # noqa: PLR0913 - one parameter for each argument and option
+    context: click.Context,
     *,
     instance: str | None,
     benchmark: MovingAI | None,
@@ -71,10 +73,10 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         seen[1:] = [progress]
         show(progress.steps, found_so_far(known, progress.bound))
 
-    warm()
+    compiling = time_of_compiling()
     started = perf_counter()
     with naming(given.name), search_progress("bounding", steps, limit) as show:
-        certificate = lower_bound(problem, limit, steps, keep)
+        certificate = lower_bound(problem, time_left(context, limit, compiling), steps, keep)
     took = perf_counter() - started
     lost = [problem.robot[robot] for robot, least in certificate.robots if least is None]
     if output.write(write(certificate)):

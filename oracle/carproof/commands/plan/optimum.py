@@ -14,7 +14,7 @@ from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, print_document, read_instance_file, write_whole
 from carproof.command_line.options import instance_argument, limit_option, listed, output_options
 from carproof.command_line.tables import print_line, print_table, remark
-from carproof.engines import warm
+from carproof.command_line.time_left import time_left, time_of_compiling
 from carproof.extras import require
 from carproof.judging.verdicts import verify_proof
 from carproof.optima import optimum_document
@@ -38,7 +38,10 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "cost", "answer", "time")
 )
 @click.option("--proof", type=click.Path(file_okay=False, path_type=Path), help="Write a proof into this folder.")
 @output_options
-def command(*, instance: str, limit: int, processes: int, proof: Path | None, output: Output) -> Answer:
+@click.pass_context
+def command(
+    context: click.Context, *, instance: str, limit: int, processes: int, proof: Path | None, output: Output
+) -> Answer:
     """Find the least total cost of plans for all robots of INSTANCE, and plans that have it.
 
     The answer comes from a search and is not proved: it rests on the solver. With --proof it is proved: the command
@@ -55,9 +58,9 @@ def command(*, instance: str, limit: int, processes: int, proof: Path | None, ou
     from carp_verify.optimum.unsolvable import describe  # noqa: PLC0415
 
     problem = read_instance_file(instance)
-    warm()
+    compiling = time_of_compiling()
     started = perf_counter()
-    best = optimum(problem, limit, processes=processes)
+    best = optimum(problem, time_left(context, limit, compiling), processes=processes)
     seconds = perf_counter() - started
     if output.file is not None and best.solution is not None:
         write_whole(output.file, write_solution(best.solution))
