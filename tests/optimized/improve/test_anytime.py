@@ -1,7 +1,9 @@
 """Plans within a time, for instances of every kind."""
 
+from itertools import count
 from time import process_time
 
+import pytest
 from hypothesis import given
 
 from carp_spec import Instance, ResourceGraph, Solution, judge
@@ -41,3 +43,12 @@ def test_robots_for_which_there_is_no_time_are_unplanned() -> None:
     found = plan_within(instance, seconds=24, clock=lambda: float(next(ticks)))
     assert 0 < len(found.unplanned) < 6
     assert judge(instance, found).valid
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_robots_left_out_are_planned_again_in_the_rest_of_the_time(seed: int) -> None:
+    """First plans take more than a third of the time here, and leave out one to four."""
+    fleet = Fleet(robots=12, seed=seed, after_goal="park")
+    instance = grid_instance(Grid(width=5, height=5, map_seed=seed), fleet, Traits(duration=Range(1, 2)))
+    ticks = count()
+    assert not plan_within(instance, seconds=60, clock=lambda: float(next(ticks))).unplanned
