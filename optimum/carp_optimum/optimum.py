@@ -33,8 +33,8 @@ def optimum(
     A long search continues with prices, where the compiled search for them is at hand; with two `processes` that has
     one of its own.
 
-    The result depends neither on the clock, which gives nanoseconds, nor on the processes: the same instance gives the
-    same solution on one kind of processor.
+    Before the limit, the result depends neither on the clock, which gives nanoseconds, nor on the processes: the same
+    instance gives the same solution on one kind of processor.
     """
     return core_guided(instance, limit, clock, partial(_start_beside, own_process=processes > 1))
 

@@ -14,14 +14,13 @@ import carp_reference
 from carp_spec import Carp, Instance, Plan, Robot, Visit, judge, violations_of
 from carp_spec.execution.logs import judge_log
 from carp_spec.execution.traces import Trace
+from carp_spec.model import Following
 from carp_spec.quick_check import LATEST, breaks_no_rule, is_large
 from carproof.execution.delays import until
-from carproof.generate import Fleet, Grid, grid_instance
+from carproof.generate import Fleet, Grid, grid_instance, with_headings
 from carproof.testing.mutations import MUTATIONS
 from carproof.testing.strategies import PlannedInstance, broken_solutions, instances, planned_instances
 from carproof.testing.vectors import vectors
-
-KNOWN = replace(SIZES, groups=0)
 
 
 def test_no_broken_vector_passes() -> None:
@@ -42,16 +41,23 @@ def test_what_passes_breaks_no_rule(case: tuple[Instance, tuple[Plan, ...]]) -> 
     assert not breaks_no_rule(instance, plans) or not violations_of(instance, plans)
 
 
-@given(instances(KNOWN))
-def test_right_plans_pass_and_no_mutant_does(instance: Instance) -> None:
+@given(instances(SIZES), st.sampled_from(["allowed", "forbidden"]))
+def test_right_plans_pass_and_no_mutant_does(drawn: Instance, following: Following) -> None:
+    instance = replace(drawn, following=following)
     solution = carp_reference.plan(instance, Carp())
     if not solution.plans:
         return
-    assert breaks_no_rule(instance, solution.plans)
+    is_sure = not instance.graph.groups or following == "allowed"
+    assert breaks_no_rule(instance, solution.plans) or not is_sure
     for mutation in MUTATIONS:
         for mutant in mutation(instance, solution):
             known = [plan for plan in mutant.solution.plans if plan.robot in mutant.instance.robot]
             assert not breaks_no_rule(mutant.instance, known) or not violations_of(mutant.instance, known)
+
+
+def test_right_plans_of_robots_that_turn_pass() -> None:
+    instance = with_headings(grid_instance(Grid(width=6, height=6), Fleet(robots=8)))
+    assert breaks_no_rule(instance, carp_reference.plan(instance, Carp()).plans)
 
 
 @pytest.mark.parametrize(("instance", "plans"), [(VANISHING, SOLVED), (PARKING, PARKED)])
@@ -65,9 +71,8 @@ def test_ticks_that_arrays_do_not_hold_are_left_to_the_rules(instance: Instance,
 @given(planned_instances(), st.integers(0, 20))
 def test_right_logs_pass_while_all_robots_are_there(planned: PlannedInstance, now: int) -> None:
     plans = [plan for plan in until(Trace(now, planned.solution.plans), now).plans if plan.visits]
-    is_known = plans and not planned.instance.graph.groups
     all_there = all(plan.visits[-1].leave is None for plan in plans)
-    assert breaks_no_rule(planned.instance, plans, now) == bool(is_known and all_there)
+    assert breaks_no_rule(planned.instance, plans, now) == bool(plans and all_there)
 
 
 def test_robots_that_meet_at_the_tick_of_the_log_do_not_pass() -> None:

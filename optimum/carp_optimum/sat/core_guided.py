@@ -87,7 +87,8 @@ def core_guided(
     `start_beside` is called once, after many conflicts, unless the instance has groups or stops, which that search does
     not know. `watch` is called as time goes by, and may end the search by `TimeOver`; by default it looks at the clock.
 
-    The result does not depend on the clock, which gives nanoseconds: the same instance gives the same solution.
+    Before the limit, the result does not depend on the clock, which gives nanoseconds: the same instance gives the same
+    solution.
     """
     require_instance(instance)
     require_limits(limit=limit)
