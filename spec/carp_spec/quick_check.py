@@ -138,7 +138,8 @@ def _each_of(values: "Sequence[Sequence[int]]", place: "Longs") -> "tuple[Longs,
 def _moves_do_not_meet(graph: ResourceGraph, source: "Longs", target: "Longs", tick: "Longs") -> bool:
     """Whether all are moves of the graph, and no two at a tick lead from areas into each other.
 
-    Two that move within one area, which is a group of capacity 1 then, have no room in it.
+    A way leads from one area into another. Who moves within an area, a group of capacity 1, is alone there if groups
+    have room for all. So ways that a move makes there and back do not count.
     """
     import numpy as np  # noqa: PLC0415 - slow to load
 
@@ -151,16 +152,17 @@ def _moves_do_not_meet(graph: ResourceGraph, source: "Longs", target: "Longs", t
         return True
     if not moves.size or (moves.take(np.searchsorted(moves, made), mode="clip") != made).any():
         return False
+    size += len(graph.groups)
+    ticks = int(tick.max()) + 1
+    if size * size * max(ticks * 2, made.size) > LARGEST:
+        return False
     if graph.groups:
-        areas, size = [graph.areas_of(each.id) for each in graph.resources], size + len(graph.groups)
+        areas = [graph.areas_of(each.id) for each in graph.resources]
         move, source = _each_of(areas, source)
         way, target = _each_of(areas, target[move])
-        source, tick = source[way], tick[move[way]]
-        is_way = source != target
-        source, target, tick = source[is_way], target[is_way], tick[is_way]
-    ticks = int(tick.max(initial=0)) + 1
-    if size * size * ticks * 2 > LARGEST:
-        return False
+        source, tick, number = source[way], tick[move[way]], move[way] * size
+        is_back = np.isin((number + source) * size + target, (number + target) * size + source)
+        source, target, tick = source[~is_back], target[~is_back], tick[~is_back]
     pair = np.minimum(source, target) * size + np.maximum(source, target)
     ways = np.sort((pair * ticks + tick) * 2 + (source > target))
     return not (np.diff(ways) == 1)[ways[:-1] % 2 == 0].any()

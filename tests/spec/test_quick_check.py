@@ -11,7 +11,7 @@ from tests.spec.strategies import SIZES, instances_with_plans
 
 import carp_optimized
 import carp_reference
-from carp_spec import Carp, Instance, Plan, Robot, Visit, judge, violations_of
+from carp_spec import Carp, Group, Instance, Plan, Robot, Visit, judge, violations_of
 from carp_spec.execution.logs import judge_log
 from carp_spec.execution.traces import Trace
 from carp_spec.model import Following
@@ -58,6 +58,12 @@ def test_right_plans_pass_and_no_mutant_does(drawn: Instance, following: Followi
 def test_right_plans_of_robots_that_turn_pass() -> None:
     instance = with_headings(grid_instance(Grid(width=6, height=6), Fleet(robots=8)))
     assert breaks_no_rule(instance, carp_reference.plan(instance, Carp()).plans)
+
+
+def test_a_right_move_within_two_groups_passes() -> None:
+    graph = replace(line("ab"), groups=(Group("g", ("a", "b"), 1), Group("h", ("a", "b"), 1)))
+    instance = instance_on(graph, Robot("r", "a", "b"))
+    assert breaks_no_rule(instance, (plan_of("r", ("a", 0, 1), ("b", 1, 2)),))
 
 
 @pytest.mark.parametrize(("instance", "plans"), [(VANISHING, SOLVED), (PARKING, PARKED)])
