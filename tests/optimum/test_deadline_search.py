@@ -6,7 +6,7 @@ from carp_optimum.bound import Progress, lower_bound
 from carproof import Instance, Resource, ResourceGraph, Robot, verify_bound
 
 MOST_REPORTS = 5000
-"""At most 700 are needed here; a search that goes round in circles reports again and again."""
+"""Fewer than 1,000 are needed here; a search that goes round in circles reports again and again."""
 
 
 def two_to_one_goal() -> Instance:

@@ -132,7 +132,7 @@ def gives_plans(function: F) -> F:
 
 
 limit_option = click.option(
-    "--limit", type=click.IntRange(min=1), default=SEARCH_SECONDS, help="The seconds to search."
+    "--limit", type=click.IntRange(min=1), default=SEARCH_SECONDS, help="The seconds that it may take."
 )
 planner_option = click.option(
     "--planner", metavar="NAME", default=Neighbourhood.name, help=f"One of {', '.join(PLANNERS)}."
