@@ -14,7 +14,7 @@ import carp_reference
 from carp_spec import Carp, Group, Instance, Plan, Robot, Visit, judge, violations_of
 from carp_spec.execution.logs import judge_log
 from carp_spec.execution.traces import Trace
-from carp_spec.model import Following
+from carp_spec.model import Following, Resource, ResourceGraph
 from carp_spec.quick_check import LATEST, breaks_no_rule, is_large
 from carproof.execution.delays import until
 from carproof.generate import Fleet, Grid, grid_instance, with_headings
@@ -72,6 +72,50 @@ def test_ticks_that_arrays_do_not_hold_are_left_to_the_rules(instance: Instance,
     for tick in (LATEST, 2**63, 2**64, -1):
         last = structs.replace(plans[0].visits[-1], leave=tick)
         assert not breaks_no_rule(instance, (replace(plans[0], visits=(*plans[0].visits[:-1], last)), *plans[1:]))
+
+
+@pytest.mark.parametrize(
+    ("instance", "plans", "now"),
+    [
+        pytest.param(
+            instance_on(line("abc"), Robot("r", "a", "b"), Robot("s", "c", "b"), after_goal="park"),
+            (
+                plan_of("r", ("a", 0, LATEST), ("b", LATEST, None)),
+                plan_of("s", ("c", 0, LATEST + 1), ("b", LATEST + 1, None)),
+            ),
+            None,
+            id="two that park in one place",
+        ),
+        pytest.param(
+            instance_on(line("ab"), Robot("r", "a", "b"), Robot("s", "a", "b")),
+            (plan_of("r", ("a", 0, None)), plan_of("s", ("a", 0, None))),
+            2 * LATEST,
+            id="two in one place until now",
+        ),
+        pytest.param(
+            instance_on(line("ab", a=2**40), Robot("r", "a", "b", pace=2**40), after_goal="park"),
+            (plan_of("r", ("a", 0, 1), ("b", 1, None)),),
+            None,
+            id="a stay that is too short",
+        ),
+    ],
+)
+def test_what_is_wrong_at_ticks_that_arrays_do_not_hold_does_not_pass(
+    instance: Instance, plans: tuple[Plan, ...], now: int | None
+) -> None:
+    assert not breaks_no_rule(instance, plans, now)
+
+
+def test_an_exchange_with_a_group_does_not_pass() -> None:
+    graph = ResourceGraph(
+        (Resource("a"), Resource("b"), Resource("c", 2), Resource("d", 2)),
+        (("a", "c"), ("a", "d"), ("b", "c"), ("c", "d")),
+        groups=(Group("g", ("a", "c")),),
+    )
+    instance = instance_on(graph, Robot("r", "c", "d"), Robot("s", "d", "a"), after_goal="park")
+    plans = plan_of("r", ("c", 0, 1), ("d", 1, None)), plan_of("s", ("d", 0, 1), ("a", 1, None))
+    assert [each.rule for each in violations_of(instance, plans)] == ["joint/exchange"]
+    assert not breaks_no_rule(instance, plans)
 
 
 @given(planned_instances(), st.integers(0, 20))
