@@ -7,7 +7,7 @@ instance take precedence. Waiting at the end of a walk is part of one visit for 
 the instance does not have, a jump, and a walk that does not end at the goal.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from typing import Any, TypeAlias
 
@@ -73,14 +73,29 @@ def require_bounded(cells: int, where: str) -> None:
 def solution_of_walks(instance: Instance, walks: Mapping[RobotId, Walk]) -> Solution:
     """The solution in which robots make these walks; a robot without a walk is unplanned."""
     require_walks(instance)
-    resources = {(each.x, each.y): each.id for each in instance.graph.resources}
-    plans = (Plan(id, _visits(walks[id], resources)) for id in instance.robot if id in walks)
+    name = namer(instance)
+    plans = (Plan(id, _visits(walks[id], name)) for id in instance.robot if id in walks)
     return Solution.of(instance, plans)
 
 
-def _visits(walk: Walk, resources: Mapping[tuple[int | None, int | None], ResourceId]) -> tuple[Visit, ...]:
+def namer(instance: Instance) -> Callable[[Cell], ResourceId]:
+    """What names cells: each by the resource there, or, where there is none, by an id that no resource has."""
+    resources = {(each.x, each.y): each.id for each in instance.graph.resources}
+
+    def name_of(cell: Cell) -> ResourceId:
+        if cell in resources:
+            return resources[cell]
+        name = cell_id(*cell)
+        while name in instance.graph.resource:
+            name += "'"
+        return name
+
+    return name_of
+
+
+def _visits(walk: Walk, name: Callable[[Cell], ResourceId]) -> tuple[Visit, ...]:
     entries = [walk[at] for at in range(len(walk)) if at == 0 or walk[at][0] != walk[at - 1][0]]
-    return visits_of([(resources.get(cell, cell_id(*cell)), tick) for cell, tick in entries])
+    return visits_of([(name(cell), tick) for cell, tick in entries])
 
 
 def visits_of(entries: Sequence[tuple[ResourceId | None, int]]) -> tuple[Visit, ...]:

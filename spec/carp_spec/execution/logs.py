@@ -69,7 +69,9 @@ def judge_log(instance: Instance, log: Trace, most: int | None = MOST_LISTED) ->
         violations += _violations(instance, there, log.now, most)
     served = tuple(each for plan in there for each in _served(instance, plan))
     last = {each.robot for each in served if each.stop == len(instance.robot[each.robot].stops) - 1}
-    done = [plan for plan in there if plan.robot in last]
+    done = [
+        each for each in there if each.robot in last and each.visits[-1].resource == instance.robot[each.robot].goal
+    ]
     return LogVerdict(total_cost(instance, done), len(done), tuple(violations), served)
 
 

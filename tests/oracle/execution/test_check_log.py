@@ -75,6 +75,14 @@ def test_tables_are_judged_against_an_instance(carproof: Run) -> None:
     assert "1         0  c            2   3" in found.stdout
 
 
+def test_a_resource_called_0_is_a_place_in_a_table(carproof: Run) -> None:
+    town = corridor([{"id": 1, "start": "a", "goal": "c"}])
+    save(town=json.loads(json.dumps(town).replace('"a"', "0")))
+    Path("log").write_text("robot,tick,resource\n1,0,0\n1,1,b\n1,2,0\n")
+    found = carproof("check-log town.json log --from csv")
+    assert (found.code, found.stdout) == (0, "no rule is broken by tick 2: 0 of 1 stops served, 0 of 1 robots done\n")
+
+
 @pytest.mark.parametrize(
     ("log", "arguments", "place"),
     [

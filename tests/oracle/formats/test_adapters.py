@@ -22,8 +22,9 @@ from tests.oracle.running import Run
 from tests.profiles import draws
 
 from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, Robot, Solution, Visit, judge
-from carproof import read_foreign_solution, write_foreign_solution, write_instance, write_solution
+from carproof import judge_log, read_foreign_solution, write_foreign_solution, write_instance, write_solution
 from carproof.formats import ADAPTERS, walks
+from carproof.formats.logs import read_log
 from carproof.formats.walks import instance_has_walks
 from carproof.generate.grid import cell_edges, cell_id
 from carproof.testing.strategies import PlannedInstance, Sizes, instances, planned_instances
@@ -330,9 +331,22 @@ def test_a_table_is_read_and_says_which_stops_are_served() -> None:
     assert [row.split(",")[-1] for row in table.splitlines()] == ["serves", "", "", "1", "", "", "1"]
     assert read(table) == read(table, "csv") == SOLUTION
     assert broken_rules(table.replace('"1,0"', '"1,1"')) == ["plan/resource"] * 1
-    ids = Instance(ResourceGraph((Resource(1), Resource("1")), ()), (Robot("r", 1, 1),), "park")
-    with pytest.raises(Refusal, match="adapter/csv"):
-        write_foreign_solution(ids, Solution.of(ids, [Plan("r", (Visit(1, 0, None),))]), "csv")
+    for id in ("1", "", "c\rd"):
+        ids = Instance(ResourceGraph((Resource(1), Resource(id)), ()), (Robot("r", 1, 1),), "park")
+        with pytest.raises(Refusal, match="adapter/csv"):
+            write_foreign_solution(ids, Solution.of(ids, [Plan("r", (Visit(1, 0, None),))]), "csv")
+
+
+def test_a_cell_without_a_resource_is_never_one_that_is_called_like_it() -> None:
+    resources = Resource("0,0", x=0, y=0), Resource("1,0", x=0, y=1), Resource("1,1", x=1, y=1)
+    graph = ResourceGraph(resources, (("0,0", "1,0"), ("1,0", "1,1")))
+    instance = Instance(graph, (Robot("r", "0,0", "1,1"),), "park")
+    around = read_foreign_solution(b"solution=\n0:(0,0),\n1:(0,1),\n2:(1,1),\n", instance)
+    through = read_foreign_solution(b"solution=\n0:(0,0),\n1:(1,0),\n2:(1,1),\n", instance)
+    assert judge(instance, around).valid
+    assert "plan/resource" in {each.rule for each in judge(instance, through).violations}
+    log = read_log(b'{"start": [[0, 0, "E"]], "actualPaths": ["F,R,F"]}', instance, "league")
+    assert "plan/resource" in {each.rule for each in judge_log(instance, log).violations}
 
 
 def test_a_table_keeps_blanks_of_ids() -> None:

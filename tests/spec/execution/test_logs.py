@@ -43,6 +43,11 @@ def test_stops_served_so_far_are_told_with_the_visits_that_served_them() -> None
     back = Plan("r", (*UNDER_WAY.visits[:2], Visit("c", 2, 4), Visit("b", 4, 5)))
     done = judge_log(instance, Trace(9, (back,)))
     assert (done.valid, done.done, done.cost) == (True, 1, 4)
+    on = Plan("r", (*back.visits[:3], Visit("b", 4, 5), Visit("c", 5, None)))
+    under_way = judge_log(instance, Trace(9, (on,)))
+    assert (under_way.done, under_way.cost, len(under_way.served)) == (0, 0, 2)
+    again = Plan("r", (*on.visits[:4], Visit("c", 5, 6), Visit("b", 6, None)))
+    assert judge_log(instance, Trace(9, (again,))).cost == 6
     hasty = Plan("r", (*UNDER_WAY.visits[:2], Visit("c", 2, 3), Visit("b", 3, 4)))
     judged = judge_log(instance, Trace(9, (hasty,)))
     assert ([each.rule for each in judged.violations], judged.served) == (["plan/stops"], ())

@@ -8,8 +8,7 @@ from carp_spec import Instance, Plan, Visit
 from carp_spec.documents.decoding import without_collection
 from carp_spec.execution.traces import Trace
 from carp_spec.rule import DESIGN
-from carproof.formats.walks import Cell
-from carproof.generate.grid import cell_id
+from carproof.formats.walks import Cell, namer
 from carproof.input_rules import Code
 
 if TYPE_CHECKING:
@@ -40,14 +39,14 @@ def trace_of(instance: Instance, log: CellLog) -> Trace:
     if len(log.walks) != len(instance.robots):
         message = f"the log must have a robot for each of {len(instance.robots)}, and has {len(log.walks)}"
         raise RIGHT_LOG.refuse("INSTANCE", message)
-    resources = {(each.x, each.y): each.id for each in instance.graph.resources}
+    name = namer(instance)
     ticks = range(max(map(len, log.walks), default=1))
     shared = [*ticks]  # one object a tick, however many visits begin at it
     plans = []
     for robot, walk in zip(instance.robot, log.walks, strict=True):
         enters = [0, *((walk[1:] != walk[:-1]).any(axis=1).nonzero()[0] + 1).tolist()]
         cells = map(tuple, walk[enters].tolist())
-        names = [resources[cell] if cell in resources else cell_id(*cell) for cell in cells]
+        names = map(name, cells)
         entered = [*map(shared.__getitem__, enters)]
         plans.append(Plan(robot, tuple(map(Visit, names, entered, [*entered[1:], None]))))
     return Trace(ticks[-1], tuple(plans))

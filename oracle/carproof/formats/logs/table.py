@@ -34,7 +34,8 @@ def read(text: str, instance: Instance, file: str) -> Trace:
                 f"{file}:{line}", f"the tick must be at least {done[-1][1]}, that of the robot's line before"
             )
         now = max(now, int(tick))
-        at = named(row["resource"], resources) or None
+        found = named(row["resource"], resources)
+        at = None if found == "" else found
         if not done or done[-1][0] != at:
             done.append((at, int(tick)))
     return Trace(now, tuple(Plan(robot, visits_of(entries)) for robot, entries in visits.items()))

@@ -24,7 +24,7 @@ RIGHT_TABLE = Code(
     "adapter/csv",
     "A table of plans has the columns robot, resource, enter and leave. A row has a robot, a resource, the tick at "
     "which it enters, and that at which it leaves, or nothing if it stays for ever. Ids of the instance print "
-    "differently.",
+    "differently, none as nothing or with a carriage return.",
     DESIGN,
 )
 
@@ -48,9 +48,9 @@ def read(text: str, instance: Instance, file: str) -> Solution:
 
 
 def write(instance: Instance, solution: Solution) -> str:
-    """Write a table; raises `Refusal` if the solution breaks a rule or ids print alike."""
+    """Write a table; raises `Refusal` if the solution breaks a rule or the table cannot hold its ids."""
     require_lawful(instance, solution)
-    ids_by_text(instance, RIGHT_TABLE)  # which refuses two that print alike
+    ids_by_text(instance, RIGHT_TABLE)  # which refuses ids that the table cannot hold
     plans = {plan.robot: plan for plan in solution.plans}
     text = StringIO()
     rows = csv.writer(text, lineterminator="\n")
