@@ -68,7 +68,7 @@ def judge(instance: Instance, solution: Solution, most: int | None = MOST_LISTED
         unplanned=sum(robot.id not in planned for robot in instance.robots),
         violations=(*solution_violations(instance, solution, most), *_violations(instance, plans, most)),
     )
-    if verdict.valid and most != 0:
+    if verdict.valid:
         known(instance, solution)
     return verdict
 

@@ -22,6 +22,7 @@ PATHS = {
 }
 """The fields that have another path than their name."""
 ENDS = (".source", ".target")
+"""The members of an edge, a pair of one type."""
 WORDS = {str: "a string", bytes: "bytes", int: "a whole number", bool: "true or false", NoneType: "None"}
 
 
@@ -52,9 +53,13 @@ def require_shape(value: object, kind: Any, path: str = "$") -> None:  # noqa: A
     if given is not None and isinstance(value, kind):
         for name, of in given.items():
             require_shape(getattr(value, name), of, path + PATHS.get(f"{kind.__name__}.{name}", f".{name}"))
-    elif is_tuple and type(value) is tuple and (is_list or len(value) == len(kinds)):
+    elif is_list and type(value) is tuple:
         for place, each in enumerate(() if _all_are(kinds[0])(value) else value):
-            require_shape(each, kinds[0], path + (f"[{place}]" if is_list else ENDS[place]))
+            require_shape(each, kinds[0], f"{path}[{place}]")
+    elif is_tuple and type(value) is tuple and len(value) == len(kinds):
+        names = ENDS if kinds[:1] * 2 == kinds else [f"[{place}]" for place in range(len(kinds))]
+        for each, of, name in zip(value, kinds, names, strict=True):
+            require_shape(each, of, path + name)
     elif is_tuple or not (type(value) in kinds or (type(value) is str and value in kinds)):
         right = "a tuple" if is_tuple else " or ".join(_word(each) for each in kinds)
         raise Refusal("document", path, SHAPE, f"it must be {right}, not {shown(value)}")
@@ -103,13 +108,16 @@ def _all_are(kind: Any) -> Callable[[Sequence[Any]], bool]:  # noqa: ANN401 - an
     """A function that tells whether all values are of the type, as far as that is seen quickly."""
     kinds, is_tuple, given = _parts(kind)
     if is_tuple:
-        of_members, sizes = _all_are(kinds[0]), None if ... in kinds else {len(kinds)}
+        of_members = [_all_are(each) for each in kinds if each is not ...]
+
+        def are_lists(values: Sequence[Any]) -> bool:
+            return {*map(type, values)} <= {tuple} and of_members[0]([each for value in values for each in value])
 
         def are_tuples(values: Sequence[Any]) -> bool:
-            same = {*map(type, values)} <= {tuple} and (sizes is None or {*map(len, values)} <= sizes)
-            return same and of_members([each for value in values for each in value])
+            same = {*map(type, values)} <= {tuple} and {*map(len, values)} <= {len(kinds)}
+            return same and all(are([value[place] for value in values]) for place, are in enumerate(of_members))
 
-        return are_tuples
+        return are_lists if ... in kinds else are_tuples
     if given is not None:
         fields = [(attrgetter(name), _all_are(of)) for name, of in given.items()]
 

@@ -120,6 +120,7 @@ def named_as(instance: Instance, format: str) -> Instance:
 
 
 def _adapter(format: str) -> Adapter:
+    require_shape(format, str, "$.format")
     if format not in ADAPTERS:
         message = f"there is no format {format!r}; the formats are {', '.join(ADAPTERS)}"
         raise Refusal("option", "$.format", CLEAR_FORMAT.id, message)

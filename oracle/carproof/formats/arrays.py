@@ -5,7 +5,7 @@ The array has a row for each y and a column for each x. A cell is free if its en
 """
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 from carp_spec import AfterGoal, Instance, Robot
 from carp_spec.rule import DESIGN
@@ -60,6 +60,8 @@ def instance_from_array(
 def _cells(grid: GridMap, given: Iterable[Sequence[int]], name: str) -> list[Cell]:
     import numpy as np  # noqa: PLC0415 - slow to load
 
+    if not isinstance(cast("object", given), Iterable):
+        raise RIGHT_ARRAY.refuse(f"$.{name}", f"it must be pairs of whole numbers, not {given!r}")
     found = []
     for place, pair in enumerate(given):
         cell = np.asarray(pair)

@@ -52,6 +52,7 @@ def import_layout(
 def read_layout(data: bytes, file: str = "layout", format: str | None = None) -> tuple[str, Layout]:
     """Read a layout; returns the name of its format with it."""
     require_shape(data, bytes, file)
+    require_shape(format, str | None, "$.format")
     tree = read_tree(data, file)
     if format is None:
         looks = [name for name, each in READERS.items() if each.looks_like(tree)]

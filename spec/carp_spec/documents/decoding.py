@@ -201,5 +201,9 @@ def without_collection() -> Iterator[None]:
 
 
 def write(document: object) -> bytes:
-    """Write a document as one line of JSON."""
-    return msgspec.json.encode(document) + b"\n"
+    """Write a document as one line of JSON; raises `Refusal` for a text that UTF-8 cannot express."""
+    try:
+        return msgspec.json.encode(document) + b"\n"
+    except UnicodeEncodeError as error:
+        message = f"all text must be such that UTF-8 can express it, not {error.object!r}"
+        raise Refusal("document", "$", is_json.id, message) from None

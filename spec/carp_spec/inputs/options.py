@@ -59,13 +59,14 @@ def require_polish_options(iterations: object, seconds: object, seed: object) ->
 def require_limits(**limits: object) -> None:
     """Raise `Refusal` unless each limit, by its name, is a number of at least 0, or `None` but for `limit` and `large`.
 
-    Steps and the most violations are whole numbers. With a limit of 0, which the protocol refuses, a search ends at
-    once.
+    Steps and the most violations are whole numbers, and the latter at least 1. With a limit of 0, which the protocol
+    refuses, a search ends at once.
     """
     for name, limit in limits.items():
         is_whole = name in ("steps", "most")
         kinds, largest = ((int,), maxsize) if is_whole else ((int, float), float_info.max)
+        least = int(name == "most")
         is_free = limit is None and name not in ("limit", "large")
-        if not (is_free or (type(limit) in kinds and 0 <= cast("float", limit) <= largest)):
-            message = f"it must be a {'whole ' if is_whole else ''}number of at least 0, not {shown(limit)}"
+        if not (is_free or (type(limit) in kinds and least <= cast("float", limit) <= largest)):
+            message = f"it must be a {'whole ' if is_whole else ''}number of at least {least}, not {shown(limit)}"
             raise Refusal("request", f"$.{name}", "request/limit", message)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from msgspec import structs
 
 import carp_optimized
 import carp_reference
@@ -289,6 +290,14 @@ HALF = replace(RIGHT.robots[0], id="r\ud800")
 """Of an id that no document can hold."""
 
 
+def proved_by(**values: Any) -> int | None:  # noqa: ANN401 - nonsense is what is asked
+    return carproof.verify_query(RIGHT, SOLVED, structs.replace(CERTIFICATE, **values))
+
+
+def found(**values: Any) -> carproof.BoundDocument:  # noqa: ANN401
+    return structs.replace(carproof.bound(RIGHT, steps=0), **values)
+
+
 def far_away(x: int) -> Instance:
     return Instance(ResourceGraph((Resource("a", x=x, y=0), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
 
@@ -314,7 +323,8 @@ def far_away(x: int) -> Instance:
             "request/limit",
             "$.limit",
         ),
-        (lambda: carproof.check(RIGHT, SOLVED, -1), "request/limit", "$.most"),
+        (lambda: carproof.check(RIGHT, SOLVED, 0), "request/limit", "$.most"),
+        (lambda: carproof.judge_log(RIGHT, NOTHING, 0), "request/limit", "$.most"),
         (lambda: carproof.audit(RIGHT, SOLVED, seconds=0), "request/limit", "$.seconds"),
         (lambda: carproof.check_grants(RIGHT, SOLVED, NOTHING, (), seconds=INFINITE), "request/limit", "$.seconds"),
         (lambda: carproof.judge_log(RIGHT, NOTHING, 2**64), "request/limit", "$.most"),
@@ -355,10 +365,19 @@ def far_away(x: int) -> Instance:
         (lambda: carproof.total_cost(RIGHT, SOLVED), "document/shape", "$.plans"),  # type: ignore[arg-type]
         (lambda: carproof.verify_bound(RIGHT, b"{}"), "document/shape", "$"),  # type: ignore[arg-type]
         (lambda: carproof.verify_query(RIGHT, SOLVED, b"{}"), "document/shape", "$"),  # type: ignore[arg-type]
+        (lambda: proved_by(bound=2.0), "document/shape", "$.bound"),
+        (lambda: proved_by(labels=((NONE, 1),)), "document/shape", "$.labels[0][0]"),
+        (lambda: proved_by(potential=(("b", float("nan")),)), "document/shape", "$.potential[0][1]"),
+        (lambda: carproof.verify_bound(RIGHT, found(horizon=INFINITE)), "document/shape", "$.horizon"),
+        (lambda: carproof.write_bound(found(resources=(("a", 1, 1.5),))), "document/shape", "$.resources[0][2]"),
         (lambda: carproof.planner_named("carp", NONE), "planner/options", "$.options"),
         (lambda: carproof.read_foreign_solution("text", RIGHT), "document/shape", "file"),  # type: ignore[arg-type]
         (lambda: carproof.write_orders(RIGHT, SOLVED, NONE), "order/settings", "$.orders"),
         (lambda: carproof.instance_from_array([[1]], [], [], "stay"), "document/shape", "$.after_goal"),  # type: ignore[arg-type]
+        (lambda: carproof.instance_from_array([[1]], NONE, []), "adapter/array", "$.starts"),
+        (lambda: write_foreign_solution(RIGHT, SOLVED, [NONE]), "document/shape", "$.format"),  # type: ignore[arg-type]
+        (lambda: carproof.import_layout(b"", format=[NONE]), "document/shape", "$.format"),  # type: ignore[arg-type]
+        (lambda: write_solution(Solution((), (), ("\ud800",))), "document/json", "$"),
         (lambda: carproof.read_movingai(b"", b"", -1), "movingai/scenario", "$.agents"),
         (lambda: carproof.conforms(carproof.plan, examples=-1), "program/questions", "$.examples"),
         (lambda: carproof.conforms(carproof.plan, without=NONE), "document/shape", "$.without"),

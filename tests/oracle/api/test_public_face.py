@@ -15,8 +15,10 @@ import click
 import networkx as nx
 import numpy as np
 import pytest
+from msgspec import structs
 
 import carproof
+from carp_spec.documents.bounds import DeadlinesDocument
 from carproof import Plan, Refusal, Resource, ResourceGraph, Robot, Solution, Visit
 from carproof.conform.run import Options
 from carproof.entry.cli import carproof as command
@@ -90,6 +92,12 @@ def test_every_document_is_written_and_read() -> None:
     ]
     for value, write, read in documents:
         assert read(write(value)) == value
+
+
+def test_a_bound_is_written_of_robots_that_are_seen_in_places_or_have_no_way() -> None:
+    seen = DeadlinesDocument(("r", "s"), (1, 2), 1, "", ((1, ("a", 2)), (1, ("b",))))
+    bound = structs.replace(carproof.bound(INSTANCE, steps=0), robots=(("r", None), (3, 0)), deadlines=(seen,))
+    assert carproof.read_bound(carproof.write_bound(bound)) == bound
 
 
 def test_a_solution_has_the_plan_of_each_robot_and_a_makespan() -> None:

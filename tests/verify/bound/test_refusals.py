@@ -201,7 +201,7 @@ def of_robot(more: int) -> Tamper:
         (of_robot(1 << 16), "$.robots[0]", "bound/robots", "robot r0 can have no more than"),
         (lambda each: change(bound=each.bound + 1)(each), "$.bound", "bound/total", "the bound must be 11,"),
         (lambda each: change(bound=each.bound - 1)(each), "$.bound", "bound/total", "and is 10"),
-        (change(bound=9.0), "$.bound", "bound/total", r"and is 9\.0"),
+        (change(bound=9.0), "$.bound", "document/shape", r"not 9\.0"),
         (lambda each: reprice(tick=10**12)(change(horizon=10**13)(each)), "$.resources", "bound/size", "would be"),
     ],
 )

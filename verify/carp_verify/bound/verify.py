@@ -27,7 +27,6 @@ number of steps.
 """
 
 from collections.abc import Sequence
-from typing import cast
 
 from carp_spec import Instance, Refusal, RobotId
 from carp_spec.documents.bounds import BoundDocument, CutDocument, DeadlinesDocument
@@ -62,8 +61,7 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
     Cuts and deadlines know groups too.
     """
     require_instance(instance)
-    if not isinstance(cast("object", certificate), BoundDocument):
-        require_shape(certificate, BoundDocument)
+    require_shape(certificate, BoundDocument)
     require(is_about, is_about(certificate.instance, digest(instance)), "$.instance", "it is about another instance")
     scale = certificate.scale
     require(is_scale, is_scale(scale), "$.scale", f"the scale must be a power of two, and is {scale!r}")

@@ -22,7 +22,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from itertools import pairwise, product, zip_longest
-from typing import cast
 
 from carp_spec import Instance, Plan, Refusal, ResourceId, Robot, Rule, Solution, Stop, Visit, has_ended
 from carp_spec.documents.query_certificates import QueryCertificateDocument, ServedLayer
@@ -143,8 +142,7 @@ def verify_query(instance: Instance, solution: Solution, certificate: QueryCerti
     is wrong with the certificate.
     """
     require_solution(instance, solution)
-    if not isinstance(cast("object", certificate), QueryCertificateDocument):
-        require_shape(certificate, QueryCertificateDocument)
+    require_shape(certificate, QueryCertificateDocument)
     message = "the plans must each break no rule, and be of different robots of the instance"
     _require(plans_are_lawful, plans_are_lawful(instance, solution.plans), "$", message)
     robot = certificate.robot

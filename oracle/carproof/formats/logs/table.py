@@ -7,6 +7,7 @@ has left. The log ends at the largest tick.
 import re
 
 from carp_spec import Instance, Plan, ResourceId, RobotId
+from carp_spec.documents.decoding import MOST_DIGITS
 from carp_spec.execution.traces import Trace
 from carproof.csv_rows import named, rows_of
 from carproof.formats.logs.cells import RIGHT_LOG
@@ -24,7 +25,7 @@ def read(text: str, instance: Instance, file: str) -> Trace:
     for line, row in rows_of(text, file, RIGHT_LOG, COLUMNS):
         require_bounded(line, file)
         robot, tick = named(row["robot"], robots), row["tick"].strip()
-        if robot == "" or not re.fullmatch(r"\d{1,18}", tick):
+        if robot == "" or not re.fullmatch(rf"\d{{1,{MOST_DIGITS}}}", tick):
             raise RIGHT_LOG.refuse(
                 f"{file}:{line}", "the line must have a robot, a tick, which is a whole number, and a resource"
             )

@@ -10,6 +10,7 @@ import re
 from io import StringIO
 
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
+from carp_spec.documents.decoding import MOST_DIGITS
 from carp_spec.rule import DESIGN
 from carproof.csv_rows import named, rows_of
 from carproof.formats.adapter import Adapter, first_line
@@ -19,7 +20,7 @@ from carproof.formats.walks import require_bounded
 from carproof.input_rules import Code
 
 COLUMNS = ("robot", "resource", "enter", "leave")
-_TICK = re.compile(r"\d{1,18}")
+_TICK = re.compile(rf"\d{{1,{MOST_DIGITS}}}")
 RIGHT_TABLE = Code(
     "adapter/csv",
     "A table of plans has the columns robot, resource, enter and leave. A row has a robot, a resource, the tick at "
