@@ -55,11 +55,11 @@ def _are_moves(crowd: Crowd, place: Longs, leave: Longs, is_last: Flags) -> bool
     """
     source = place[~is_last]
     target = np.roll(place, -1)[~is_last]
-    is_move = np.zeros(source.size, np.bool_)
-    for k in range(int(np.diff(crowd.first).max(initial=0))):
-        edge = crowd.first[source] + k
-        is_edge = edge < crowd.first[source + 1]
-        is_move |= is_edge & (crowd.target[np.where(is_edge, edge, 0)] == target)
+    size = crowd.queue.size
+    moves = np.sort(np.repeat(np.arange(size), np.diff(crowd.first)) * size + crowd.target)
+    made = source * size + target
+    if made.size and not (moves.size and (moves.take(np.searchsorted(moves, made), mode="clip") == made).all()):
+        return False
     low, high = np.minimum(source, target), np.maximum(source, target)
-    pairs = np.sort((low * crowd.queue.size + high << TICKS) + leave[~is_last])
-    return bool(is_move.all()) and not (pairs[1:] == pairs[:-1]).any()
+    pairs = np.sort((low * size + high << TICKS) + leave[~is_last])
+    return not (pairs[1:] == pairs[:-1]).any()

@@ -66,11 +66,14 @@ def polish_or_anneal(
         return carp_optimized.polish(instance, solution, iterations=iterations, seed=seed, now=now, advance=advance)
     started = perf_counter()
     whole = sound_solution(instance, solution)
-    left = max(seconds - (perf_counter() - started), BRIEF)
-    found = improve_crowd(instance, whole, left, seed=seed, advance=advance) if now == 0 else None
+
+    def left() -> float:
+        return max(seconds - (perf_counter() - started), BRIEF)
+
+    found = improve_crowd(instance, whole, left(), seed=seed, advance=advance) if now == 0 else None
     if found is not None:
         return found
-    return anneal(instance, solution, left, seed=seed, now=now, advance=advance, repairs=now == 0)
+    return anneal(instance, solution, left(), seed=seed, now=now, advance=advance, repairs=now == 0)
 
 
 def anneal(

@@ -20,7 +20,7 @@ from carp_optimized.crowds.stays import Paths, no_paths, solution_along
 from carp_optimized.improve.clock import Clock
 from carp_optimized.improve.cycles import Advance, improved
 from carp_optimized.improve.first_paths import first_paths
-from carp_optimized.jit.kinds import Ints
+from carp_optimized.jit.kinds import Flags, Ints
 from carp_optimized.jit.references import Native
 from carp_spec import Instance, Solution
 
@@ -56,16 +56,18 @@ def plan_crowd(
 
     `advance` gets the rounds, the robots without a plan, and the total. The time for `finish`, which the caller does
     with what is found, is part of the seconds: it is timed on a few visits. Equal iterations and seed give an equal
-    result. `None` for an instance that is not `is_stepwise`.
+    result. `None` for an instance that is not `is_stepwise`, and for ways longer than distances are measured.
     """
     timer = Clock(seconds, clock, clock())
     if not is_stepwise(instance) or not instance.robots:
         return None
     crowd = crowd_of(instance)
-    apart = are_apart(crowd)
+    apart = _apart(crowd)
     rows, crowd = np.flatnonzero(apart), only(crowd, apart)
     timer.visit = time_of_visit(instance, clock, finish)
     crowd, found, is_measured = _with_distances(crowd, timer)
+    if _may_be_further(crowd):
+        return None
     rows = rows[found]
     has_way = ways_of(crowd) < FAR
     rows, crowd = rows[has_way], only(crowd, has_way)
@@ -84,7 +86,10 @@ def improve_crowd(
     advance: Advance = lambda _, __, ___: None,
     clock: Callable[[], float] = perf_counter,
 ) -> Solution | None:
-    """Better plans by that many seconds of rounds; `None` if a robot has no plan, or the instance is not stepwise."""
+    """Better plans by that many seconds of rounds.
+
+    `None` if a robot has no plan, the instance is not stepwise, or a way is longer than distances are measured.
+    """
     timer = Clock(seconds, clock, clock())
     if len(solution.plans) < len(instance.robots) or not is_stepwise(instance) or not instance.robots:
         return None
@@ -93,12 +98,33 @@ def improve_crowd(
     paths = _paths_of_plans(instance, solution)
     timer.reserve(int(paths.size.sum()))
     crowd, found, _ = _with_distances(crowd, timer)
-    if found.size < len(instance.robots) or (ways_of(crowd) == FAR).any():
+    if (ways_of(crowd) == FAR).any():
+        return None
+    if found.size < len(instance.robots):
         return solution
     paths = Paths(paths.size[found], paths.place[found], paths.enter[found])
     paths = improved(crowd, [paths], None, timer, seed, advance)
     require_lawful(crowd, paths)
     return solution_along(instance, [instance.robots[row] for row in found], paths)
+
+
+def _apart(crowd: Crowd) -> Flags:
+    """Of each robot, whether none before it that has a way starts in its place, or parks in its goal."""
+    ends = (crowd.start, crowd.goal) if crowd.parks else (crowd.start,)
+    shared = np.any([np.bincount(each)[each] > 1 for each in ends], axis=0)
+    has_way = np.ones(shared.size, np.bool_)
+    if shared.any():
+        sharing = only(crowd, shared)
+        rows = np.arange(sharing.start.size, dtype=np.int32)
+        measure(Native(sharing), rows, 0, rows.size)
+        has_way[shared] = ways_of(sharing) < FAR
+    has_way[has_way] = are_apart(only(crowd, has_way))
+    return has_way
+
+
+def _may_be_further(crowd: Crowd) -> bool:
+    """Whether distances to a goal were measured as far as they go, and the way to it may be longer."""
+    return bool((crowd.distance[ways_of(crowd) == FAR] == FAR - 1).any())
 
 
 def _paths_of_plans(instance: Instance, solution: Solution) -> Paths:

@@ -32,6 +32,10 @@ ENDLESS = 1 << 40
 """More than any sum of distances."""
 ROOM = 256
 """The configurations, beyond the steps of the longest way, for which there is room at first."""
+DEMANDED = 8
+"""The demands of a configuration for which there is room at first, however many places it leads to."""
+MOST = 1 << 25
+"""Places in all configurations, or demands, beyond which there is no more room; twice as many take about a gigabyte."""
 
 
 class Nodes(NamedTuple):
@@ -111,24 +115,31 @@ class Search:
         return int(self._native.fields.least.max())
 
     def go(self, steps: int) -> None:
-        """Try that many successors, or until `outcome` is not `RUNNING`; if it is `FOUND`, there are `paths`."""
+        """Try that many successors, or until `outcome` is not `RUNNING`; if it is `FOUND`, there are `paths`.
+
+        It ends as `FULL` where more configurations or demands would take too much memory.
+        """
         nodes = self._native.fields.nodes
         last = int(nodes.counts[TRIED]) + steps
         while self.outcome == RUNNING and nodes.counts[TRIED] < last:
             self.outcome = search(self._native, last - int(nodes.counts[TRIED]))
             if self.outcome == FULL:
                 lacam = self._native.fields
-                nodes = _enlarged(lacam.crowd, nodes)
+                is_full = nodes.counts[NODES] == nodes.present.size or nodes.counts[DEPTH] == nodes.stack.size
+                if (nodes.places.size if is_full else nodes.place.size) > MOST:
+                    return
+                nodes = _enlarged(lacam.crowd, nodes) if is_full else _with_more_demands(nodes)
                 self._native = Native(lacam._replace(nodes=nodes))
                 self.outcome = RUNNING
         if self.outcome == FOUND:
             self.paths = _paths(nodes)
 
 
-def _no_nodes(crowd: Crowd, room: int) -> Nodes:
+def _no_nodes(crowd: Crowd, room: int, least: int = 0) -> Nodes:
+    """Room for so many configurations, and for at least so many demands."""
     robots = crowd.start.size
     choices = int(np.diff(crowd.first).max(initial=0)) + 1
-    demands = (choices + 1) * room  # each successor tried adds at most so many
+    demands = max(min(choices + 1, DEMANDED) * room, least) + choices + 1  # each successor tried adds at most `choices`
     return Nodes(
         places=np.empty((room, robots), np.int32),
         order=np.empty((room, robots), np.int32),
@@ -149,8 +160,8 @@ def _no_nodes(crowd: Crowd, room: int) -> Nodes:
 
 
 def _enlarged(crowd: Crowd, nodes: Nodes) -> Nodes:
-    """The same configurations, with twice the room."""
-    larger = _no_nodes(crowd, 2 * nodes.present.size)
+    """The same configurations, with room for twice as many."""
+    larger = _no_nodes(crowd, 2 * nodes.present.size, nodes.place.size)
     used = int(nodes.counts[NODES])
     for name, before in nodes._asdict().items():
         if name != "bucket":
@@ -160,6 +171,13 @@ def _enlarged(crowd: Crowd, nodes: Nodes) -> Nodes:
         at = int(larger.hash[node]) % larger.bucket.size
         larger.chain[node], larger.bucket[at] = larger.bucket[at], node
     return larger
+
+
+def _with_more_demands(nodes: Nodes) -> Nodes:
+    """The same configurations, with room for twice the demands."""
+    demands = (nodes.place, nodes.above, nodes.level, nodes.later)
+    place, above, level, later = (np.concatenate([each, np.empty_like(each)]) for each in demands)
+    return nodes._replace(place=place, above=above, level=level, later=later)
 
 
 def _place_root(lacam: Lacam) -> None:

@@ -11,16 +11,17 @@ import pytest
 from hypothesis import given
 from tests.optimized.crowds.measuring import measured, on_grid
 
-from carp_optimized.crowds.crowd import is_stepwise, ways_of
+from carp_optimized.crowds.crowd import FAR, is_stepwise, ways_of
 from carp_optimized.crowds.improving import Improving, arrivals
 from carp_optimized.crowds.rounds import GREEDY
 from carp_optimized.crowds.sipp import UNTIL_FOUND
 from carp_optimized.improve import first_paths, planning
+from carp_optimized.improve.anytime import plan_within
 from carp_optimized.improve.clock import ALL, Clock
 from carp_optimized.improve.cycles import FEW, SPARSE, improved
 from carp_optimized.improve.planning import improve_crowd
 from carp_optimized.lacam.search import Search, plans_by_steps
-from carp_spec import AfterGoal, Instance, RobotId, Solution, judge, total_cost
+from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot, RobotId, Solution, judge, total_cost
 from carproof.testing.strategies import Sizes, instances
 
 
@@ -59,6 +60,31 @@ def test_rounds_improve_a_crowd_and_its_best_total_never_rises(after_goal: After
     first = plans_by_steps(instance)
     assert first is not None
     assert 2 * seen[-1] < total_cost(instance, first) + seen[0]
+
+
+@pytest.mark.parametrize(
+    ("after_goal", "robots"),
+    [
+        ("vanish", (Robot("A", "a", "c"), Robot("B", "a", "b"))),
+        ("park", (Robot("A", "c", "b"), Robot("B", "a", "b"))),
+        ("park", (Robot("A", "a", "c"), Robot("B", "a", "b"), Robot("C", "b", "a"), Robot("D", "d", "a"))),
+    ],
+)
+def test_a_robot_without_a_way_keeps_no_place_from_another(after_goal: AfterGoal, robots: tuple[Robot, ...]) -> None:
+    graph = ResourceGraph(tuple(map(Resource, "abcd")), (("a", "b"), ("a", "d"), ("b", "d")))
+    instance = Instance(graph, robots, after_goal)
+    found = plan_crowd(instance, iterations=10, seconds=None)
+    assert judge(instance, found).valid
+    assert {*found.unplanned} == {"A", "D"} & {each.id for each in robots}
+
+
+def test_a_way_longer_than_distances_are_measured_is_found_all_the_same() -> None:
+    length = FAR + 2
+    graph = ResourceGraph(tuple(map(Resource, range(length))), tuple((k, k + 1) for k in range(length - 1)))
+    instance = Instance(graph, (Robot("r", 0, length - 1),))
+    found = plan_within(instance, iterations=1)
+    assert total_cost(instance, found.solution.plans) == length - 1
+    assert improve_crowd(instance, found.solution, 1.0) is None
 
 
 @pytest.mark.parametrize(("name", "value"), [("JAMMED", 0), ("JAMMED", 10**6), ("LARGE", 0)])

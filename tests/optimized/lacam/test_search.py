@@ -10,6 +10,7 @@ from carp_optimized import plan
 from carp_optimized.crowds.crowd import is_stepwise
 from carp_optimized.crowds.improving import total_of
 from carp_optimized.crowds.stays import solution_along
+from carp_optimized.lacam import search
 from carp_optimized.lacam.search import STEPS, Search, plans_by_steps
 from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, Solution, judge
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
@@ -49,6 +50,18 @@ def test_robots_that_no_order_plans_get_plans() -> None:
 def test_two_robots_swap_at_a_far_pocket() -> None:
     instance = row_with_pockets(12, (9,), ((0, 1), (1, 0)))
     assert keeps_the_law(instance, steps=60)
+
+
+def test_room_grows_with_the_demands_of_places_that_many_lead_to(monkeypatch: pytest.MonkeyPatch) -> None:
+    edges = tuple(("hub", leaf) for leaf in range(200))
+    graph = ResourceGraph((Resource("hub"), *map(Resource, range(200))), edges)
+    star = Instance(graph, tuple(Robot(f"r{k}", k, k + 100) for k in range(20)))
+    roomy = plans_by_steps(star)
+    monkeypatch.setattr(search, "ROOM", 1)
+    monkeypatch.setattr(search, "DEMANDED", 1)
+    assert plans_by_steps(star) == roomy is not None
+    monkeypatch.setattr(search, "MOST", 1)
+    assert plans_by_steps(star) is None
 
 
 @pytest.mark.parametrize("seed", range(8))
