@@ -1,12 +1,13 @@
 """All experiments by name: their sizes, their cases and their reports."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pkgutil import resolve_name
+from typing import Any
 
 from carp_experiments.paper.map_cases import FULL_MAP, SORTING, WAREHOUSE, MapCase
-from carp_experiments.report import ExperimentReport
+from carp_experiments.report import ExperimentReport, Figure
 from carp_experiments.store import Row
 from carp_spec import Refusal
 from carproof.generate.options import ends_suffice
@@ -42,8 +43,9 @@ class Profile:
 class Experiment:
     """An experiment. The case of an assignment and a map is the same in every profile with as many robots.
 
-    `functions` names two without their endings: `_row` makes the row of a case, and `_report` a report of rows and the
-    number of robots. They are loaded when needed, for numba is slow to load.
+    `functions` names some without their endings: `_row` makes the row of a case, `_report` a report of rows and the
+    number of robots, and `_figures`, if it is there, the figures of a summary. They are loaded when needed, for numba
+    is slow to load.
     """
 
     name: str
@@ -63,6 +65,12 @@ class Experiment:
         """The report of rows."""
         report: ExperimentReport = resolve_name(f"carp_experiments.{self.functions}_report")(rows, robots)
         return report
+
+    @property
+    def figures(self) -> Callable[[Any], Sequence[Figure]] | None:
+        """What makes the figures of a summary, if it has any."""
+        module, _, name = self.functions.partition(":")
+        return getattr(resolve_name(f"carp_experiments.{module}"), f"{name}_figures", None)
 
     def refuse(self, profile: Profile) -> None:
         """Raise `Refusal` where the maps have no place for this many robots."""

@@ -4,19 +4,15 @@
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar, get_type_hints
 
 import msgspec
 
-from carp_experiments.paper.adding_time import Time
 from carp_experiments.paper.claims import Claim, quality_claims, related_claims, reuse_claims, time_claims
-from carp_experiments.paper.quality import QualitySummary
-from carp_experiments.paper.related_work import Related
-from carp_experiments.paper.reuse_counts import ReuseOf
 
 T = TypeVar("T")
 RESULTS = Path(__file__).parents[1] / "results"
@@ -42,21 +38,20 @@ def read_run(path: Path) -> Run:
     return msgspec.json.decode(path.read_bytes(), type=Run)
 
 
-def claims_of(run: Run) -> Iterator[Claim]:
+def claims_of(run: Run) -> Iterable[Claim]:
     """The paper's claims that a run decides."""
-    if run.experiment == "quality":
-        yield from quality_claims(summary_of(run, QualitySummary))
-    elif run.experiment == "time":
-        yield from time_claims(summary_of(run, tuple[Time, ...]))
-    elif run.experiment == "reuse":
-        yield from reuse_claims(summary_of(run, tuple[ReuseOf, ...]))
-    elif run.experiment == "related":
-        yield from related_claims(summary_of(run, tuple[Related, ...]))
+    deciding: Mapping[str, Callable[[Any], Iterable[Claim]]] = {
+        "quality": quality_claims,
+        "time": time_claims,
+        "reuse": reuse_claims,
+        "related": related_claims,
+    }
+    return of_summary(deciding[run.experiment], run) if run.experiment in deciding else ()
 
 
-def summary_of(run: Run, type: type[T]) -> T:
-    """The summary of a run, in its own type."""
-    return msgspec.json.decode(run.summary, type=type)
+def of_summary(function: Callable[[Any], T], run: Run) -> T:
+    """What a function makes of the summary of a run, which it gets in the type that it asks for."""
+    return function(msgspec.json.decode(run.summary, type=get_type_hints(function)["summary"]))
 
 
 @cache
