@@ -163,12 +163,7 @@ def up_to(saved: Savings, own: Means, map: int, names: Sequence[str], paper: int
     of_paper = [here[name] for name in names if name in here]
     with_baseline = [here[name] for name in based if name in here]
     verdicts = number_verdict(of_paper, paper), number_verdict(with_baseline, paper)
-    return Claim(claim, found, *verdicts, number_reason(verdicts[0]), number_reason(verdicts[1]))
-
-
-def number_reason(verdict: Verdict) -> str:
-    """Why a number comes out in part."""
-    return OTHER_CONVENTIONS if verdict == "in part" else ""
+    return Claim(claim, found, *verdicts, *(OTHER_CONVENTIONS if each == "in part" else "" for each in verdicts))
 
 
 def number_verdict(found: Sequence[Interval], paper: int) -> Verdict:

@@ -3,7 +3,7 @@
 from collections import defaultdict
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from typing import Protocol, TypeVar
+from typing import TypeVar, cast
 
 import msgspec
 
@@ -24,15 +24,7 @@ MAP_AXIS = f"map (0: spanning tree, {FULL_MAP}: full grid)"
 SHOWN_MAPS = (0, 5, 10, 15, 20)
 
 
-class OnMap(Protocol):
-    """A stored row of such an experiment."""
-
-    @property
-    def map(self) -> int:
-        """The number of its map."""
-
-
-R = TypeVar("R", bound=OnMap)
+R = TypeVar("R")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +65,7 @@ def rows_by_map(rows: Iterable[Row], shape: type[R]) -> dict[int, list[R]]:
     """The stored rows of each map, the maps in their order."""
     by_map: dict[int, list[R]] = defaultdict(list)
     for row in rows:
-        stored = msgspec.convert(row, shape)
-        by_map[stored.map].append(stored)
+        by_map[cast("int", row["map"])].append(msgspec.convert(row, shape))
     return dict(sorted(by_map.items()))
 
 

@@ -10,6 +10,7 @@ from itertools import product
 from carp_spec import Instance, Resource, ResourceGraph
 from carproof.generate import Fleet
 from carproof.generate.fleet import random_robots
+from carproof.generate.grid import cell_id
 
 WIDTH, HEIGHT = 77, 37
 APART, CHUTES = 3, 2
@@ -20,16 +21,13 @@ Cell = tuple[int, int]
 def sorting_instance(fleet: Fleet) -> Instance:
     """Robots that start at stations, each with a goal beside a chute."""
     cells = [(x, y) for y, x in product(range(HEIGHT), range(WIDTH)) if not is_chute(x, y)]
-    edges = [(name(cell), name(to)) for cell in cells for to in moves(*cell)]
-    stations = [name((x, y)) for x, y in cells if y in {0, HEIGHT - 1} and x % APART == CHUTES]
-    drops = [name(cell) for cell in cells if any(is_chute(*near) for near in around(*cell) if 0 < near[1] < HEIGHT - 1)]
-    graph = ResourceGraph(tuple(Resource(name((x, y)), x=x, y=y) for x, y in cells), tuple(edges), directed=True)
+    edges = [(cell_id(*cell), cell_id(*to)) for cell in cells for to in moves(*cell)]
+    stations = [cell_id(x, y) for x, y in cells if y in {0, HEIGHT - 1} and x % APART == CHUTES]
+    drops = [
+        cell_id(*cell) for cell in cells if any(is_chute(*near) for near in around(*cell) if 0 < near[1] < HEIGHT - 1)
+    ]
+    graph = ResourceGraph(tuple(Resource(cell_id(x, y), x=x, y=y) for x, y in cells), tuple(edges), directed=True)
     return Instance(graph, random_robots(fleet, stations, drops), fleet.after_goal)
-
-
-def name(cell: Cell) -> str:
-    """The id of a cell."""
-    return f"{cell[0]},{cell[1]}"
 
 
 def is_chute(x: int, y: int) -> bool:
