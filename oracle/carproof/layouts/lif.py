@@ -91,16 +91,11 @@ def _require_once(things: Sequence[Tree], field: str) -> None:
 
 def _note_types(layout: Layout, edges: Sequence[Tree]) -> None:
     """Note the edges that are not for all types of vehicles: those for which an edge has properties may use it."""
-    allowed = [{each.get(*TYPES) for each in _all(edge, EDGES)} for edge in edges]
+    allowed = [{each.get(*TYPES) for each in edge.all(*EDGES)} for edge in edges]
     names = [{None if type is None else type.value for type in types} for types in allowed]
     for edge, types in zip(edges, names, strict=True):
         if types and types != set().union(*names):
             layout.note("edges that are not for all types of vehicles; here they are", edge.get(*EDGES))
-
-
-def _all(thing: Tree, names: Sequence[str]) -> list[Tree]:
-    found = thing.get(*names)
-    return [] if found is None else found.entries
 
 
 def _nodes(layout: Layout, layouts: Sequence[Tree], served: AbstractSet[str]) -> None:
@@ -121,7 +116,7 @@ def _nodes(layout: Layout, layouts: Sequence[Tree], served: AbstractSet[str]) ->
 
 def _types(layout: Layout, thing: Tree, names: tuple[str, ...]) -> list[Tree]:
     """The properties of each type of vehicle."""
-    types = _all(thing, names)
+    types = thing.all(*names)
     if len(types) > 1:
         layout.note("differences between types of vehicles; lanes are open to all, at the lowest speed", types[1])
     for each in types:

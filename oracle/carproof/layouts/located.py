@@ -184,9 +184,10 @@ class Tree:
         found = self.get(*names)
         return None if found is None else METRE * found.positive
 
-    def all(self, name: str) -> list["Tree"]:
-        """The entries of a field, none if it is absent."""
-        return self._fields[name].entries if self._has(name) else []
+    def all(self, *names: str) -> list["Tree"]:
+        """The entries of the first of these fields that there is, none if all are absent."""
+        found = self.get(*names)
+        return [] if found is None else found.entries
 
 
 def read_tree(data: bytes, file: str) -> Tree:
