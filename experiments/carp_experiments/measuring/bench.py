@@ -5,7 +5,6 @@ code exist. A pass is CARP over all robots, on an empty fleet and in the same ru
 """
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import click
@@ -57,8 +56,8 @@ def command(assignments: int, growth: bool, as_json: bool) -> Answer:
             "query_us": full.query_us,
             "pass_us": full.pass_us,
             "ratios": {each.neighbourhood: each.ratio for each in full.added if each.k == ROBOTS},
-            "maps": [asdict(each) for each in maps],
-            "growth": [asdict(each) for each in grids],
+            "maps": maps,
+            "growth": grids,
         }
         print_document(write(found))
     else:

@@ -1,7 +1,7 @@
 """The time of a whole command: from its start to the last line that it prints."""
 
 from time import perf_counter
-from typing import overload
+from typing import TypeVar
 
 import click
 
@@ -11,26 +11,15 @@ ENDING = 0.05
 """The seconds that it takes to print the answer, and to end."""
 HARDLY_ANY = 1e-3
 """The seconds that a search gets where none are left, as it refuses 0."""
+S = TypeVar("S", float, float | None)
 
 
-@overload
-def time_left(context: click.Context, seconds: float, compiling: float = ..., judging: float = ...) -> float: ...
-
-
-@overload
-def time_left(
-    context: click.Context, seconds: float | None, compiling: float = ..., judging: float = ...
-) -> float | None: ...
-
-
-def time_left(
-    context: click.Context, seconds: float | None, compiling: float = 0.0, judging: float = 0.0
-) -> float | None:
+def time_left(context: click.Context, seconds: S, compiling: float = 0.0, judging: float = 0.0) -> S:
     """What is left of the seconds of the command, not counting those of `compiling`; wrong ones stay, to be refused.
 
     The answer is judged in `judging` seconds.
     """
-    if seconds is None or not seconds > 0:
+    if not (seconds and seconds > 0):
         return seconds
     started: float = context.find_root().obj
     return max(seconds + compiling - (perf_counter() - started) - judging - ENDING, HARDLY_ANY)
