@@ -61,8 +61,9 @@ def _copy(layout: Layout, whole: Layout, tile: str, x: int, y: int) -> None:
     for point in layout.points.values():
         whole.points[tile + point.id] = Point(tile + point.id, x + _x(point), y + _y(point), point.stands)
     for lane in layout.lanes.values():
-        source, target, strip = tile + lane.source, tile + lane.target, tile + lane.strip
-        whole.lanes[tile + lane.id] = replace(lane, id=tile + lane.id, source=source, target=target, strip=strip)
+        source, target = tile + lane.source, tile + lane.target
+        strips = tuple(replace(each, ends=frozenset(tile + end for end in each.ends)) for each in lane.strips)
+        whole.lanes[tile + lane.id] = replace(lane, id=tile + lane.id, source=source, target=target, strips=strips)
     for block in layout.blocks.values():
         members = tuple(tile + each for each in block.members)
         whole.blocks[tile + block.id] = replace(block, id=tile + block.id, members=members)

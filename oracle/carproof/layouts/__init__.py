@@ -64,5 +64,6 @@ def read_layout(data: bytes, file: str = "layout", format: str | None = None) ->
         raise Refusal("option", "$.format", RIGHT_SETTINGS.id, message)
     reader = READERS[format]
     layout = reader.read(tree)
+    layout.note_lanes_apart()
     layout.note_unread(tree, reader.features, reader.silent)
     return format, layout

@@ -45,13 +45,13 @@ def _shapes(layout: Layout, size: Footprint) -> Iterator[Shape]:
             raise layout.tree.refuse(f"the point {point.id!r} must have a position, for a footprint")
         at[point.id] = (2 * point.x, 2 * point.y)
     ways: dict[str, list[Vector]] = {each: [] for each in at}
-    strips: dict[str, list[str]] = {}
+    strips: dict[object, list[str]] = {}
     for lane in layout.lanes.values():
         way = _from(at[lane.source], at[lane.target])
         if way != (0, 0):
             ways[lane.source].append(way)
             ways[lane.target].append(way)
-        strips.setdefault(lane.strip, []).append(lane.id)
+        strips.setdefault(lane.strips[0], []).append(lane.id)
     for name, place in at.items():
         along = ways[name][:1]
         turns = not along or any(_cross(along[0], way) for way in ways[name])

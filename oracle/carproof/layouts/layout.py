@@ -10,6 +10,7 @@ from fractions import Fraction
 from math import isqrt
 
 from carproof.layouts.located import LARGEST, Tree
+from carproof.layouts.strips import Spot, Strip, Track, strip_of
 
 SILENT = frozenset(("<>", "text", "xmlns", "xmlns:xsi", "xsi:schemaLocation"))
 """Of XML, what says nothing of a layout."""
@@ -24,13 +25,18 @@ class Point:
     y: int | None
     stands: bool
 
+    @property
+    def spot(self) -> Spot | None:
+        """Where it is, if that is known."""
+        return None if self.x is None or self.y is None else (self.x, self.y)
+
 
 @dataclass(frozen=True, slots=True)
 class Lane:
     """A way from one point to another; `None` is no length, which takes a tick, or no limit of the speed.
 
-    `share` is the part of its speed that a vehicle may use; `backwards` is whether it looks back. Lanes of one `strip`
-    are the same piece of the floor, such as the two directions of a lane.
+    `share` is the part of its speed that a vehicle may use; `backwards` is whether it looks back. `strips` are the
+    pieces of the floor that vehicles take; those of several types may take several.
     """
 
     id: str
@@ -38,7 +44,7 @@ class Lane:
     target: str
     length: int | None
     speed: Fraction | None
-    strip: str
+    strips: tuple[Strip, ...]
     share: Fraction = Fraction(1)
     backwards: bool = False
 
@@ -68,12 +74,19 @@ class Note:
     lines: tuple[int, ...]
 
 
+def spot(at: Tree, place: tuple[Fraction, Fraction]) -> Spot:
+    """A place in mm as whole mm."""
+    if max(map(abs, place)) > LARGEST:
+        raise at.refuse(f"a position must be between -{LARGEST} and {LARGEST} mm")
+    return round(place[0]), round(place[1])
+
+
 @dataclass(slots=True)
 class Layout:
     """What a reader has found so far.
 
     `holds_ends`: who is on a lane holds both its ends too. `places` has, of points that are one place on the floor, the
-    first. `straight` has the strips of straight lanes by the places of their ends. `passed` has the values noted whole.
+    first. `unshaped` has the lanes whose course is not known. `passed` has the values noted whole.
     """
 
     tree: Tree
@@ -84,7 +97,7 @@ class Layout:
     vehicles: dict[str, Vehicle] = field(default_factory=dict)
     left_out: dict[str, list[int]] = field(default_factory=dict)
     places: dict[str, str] = field(default_factory=dict)
-    straight: dict[frozenset[str], str] = field(default_factory=dict)
+    unshaped: dict[str, Tree] = field(default_factory=dict)
     passed: set[int] = field(default_factory=set)
 
     @property
@@ -116,6 +129,24 @@ class Layout:
                     kind = "element" if name.startswith("<") else "field"
                     self.note(features.get(name, f"the {kind} {name}"), each)
 
+    def note_lanes_apart(self) -> None:
+        """Note lanes of which it is not known whether they are one strip with a lane that leads the other way.
+
+        Who is on a lane and holds its ends meets nobody.
+        """
+        ways: dict[tuple[str, str], dict[tuple[Strip, ...], None]] = {}
+        for lane in self.lanes.values():
+            ways.setdefault(self._places(lane.source, lane.target), {})[lane.strips] = None
+        for name, at in self.unshaped.items():
+            lane = self.lanes[name]
+            source, target = self._places(lane.source, lane.target)
+            apart = any(set(lane.strips).isdisjoint(each) for each in ways.get((target, source), {}))
+            if apart and source != target and not self.holds_ends:
+                self.note("lanes of another length than the way back; robots may meet on the two", at)
+
+    def _places(self, source: str, target: str) -> tuple[str, str]:
+        return self.places.get(source, source), self.places.get(target, target)
+
     def require_points(self, at: Tree, *ids: str) -> None:
         """Raise `Refusal` where one of the points is not of the layout."""
         for id in ids:
@@ -126,9 +157,7 @@ class Layout:
         """Add a point, at a place in mm."""
         if id in self.points:
             raise at.refuse(f"the point {id!r} must be given once")
-        if place is not None and max(map(abs, place)) > LARGEST:
-            raise at.refuse(f"a position must be between -{LARGEST} and {LARGEST} mm")
-        x, y = (None, None) if place is None else map(round, place)
+        x, y = (None, None) if place is None else spot(at, place)
         self.points[id] = Point(id, x, y, stands)
 
     def lane(  # noqa: PLR0913 - one for each fact of a lane
@@ -138,17 +167,19 @@ class Layout:
         ends: tuple[str, str],
         *,
         speed: Fraction | None = None,
-        length: Fraction | None = None,
+        length: Fraction | int | None = None,
         back: bool = False,
         back_speed: Fraction | None = None,
         share: Fraction | None = None,
         backwards: bool = False,
         level: bool = True,
+        tracks: Sequence[Track] = (),
     ) -> tuple[str, ...]:
         """Add a lane, and with `back` a second one the other way; without a name it is called by its ends.
 
         `back_speed` is that of the second if it differs. `backwards` is whether vehicles drive backwards on the second,
-        or on the one. The positions of ends that are not on one `level` do not tell the length.
+        or on the one. The positions of ends that are not on one `level` do not tell the length. `tracks` are those of
+        each type of vehicle, if the lane is not straight for all or its length is not all that is known.
         """
         self.require_points(at, *ends)
         name = f"{ends[0]} -> {ends[1]}" if id is None else id
@@ -159,10 +190,12 @@ class Layout:
         if distance == 0 and length is None:
             raise at.refuse(f"the length of a lane must be above 0, and {ends[0]!r} and {ends[1]!r} are at one place")
         millimetres = distance if length is None else -(-length // 1)
-        floor = frozenset(self.places.get(end, end) for end in ends)
-        strip = self.straight.setdefault(floor, name) if millimetres == distance else name
-        lane = Lane(name, *ends, millimetres, speed, strip, share or Fraction(1), backwards and not back)
+        tracks = tracks or (Track(None if length is None else millimetres),)
+        strips = self._strips(ends, tracks, distance)
+        lane = Lane(name, *ends, millimetres, speed, strips, share or Fraction(1), backwards and not back)
         self.lanes[name] = lane
+        if not all(each.course or each.length == distance for each in tracks):
+            self.unshaped[name] = at
         if not back:
             return (name,)
         other = f"{name} (reverse)"
@@ -171,6 +204,12 @@ class Layout:
             lane, id=other, source=ends[1], target=ends[0], speed=back_speed or speed, backwards=backwards
         )
         return name, other
+
+    def _strips(self, ends: tuple[str, str], tracks: Sequence[Track], distance: int | None) -> tuple[Strip, ...]:
+        """The strips along the tracks, each once."""
+        spots = [each for end in ends if (each := self.points[end].spot) is not None]
+        floor = frozenset(self._places(*ends))
+        return tuple(dict.fromkeys(strip_of(each, floor, spots, distance) for each in tracks))
 
     def _is_taken(self, name: str) -> bool:
         return name in self.lanes or name in self.points
@@ -201,10 +240,10 @@ class Layout:
 
     def distance(self, source: str, target: str) -> int | None:
         """The distance of two points in mm, rounded up; `None` where they have no positions."""
-        one, two = self.points[source], self.points[target]
-        if one.x is None or one.y is None or two.x is None or two.y is None:
+        one, two = self.points[source].spot, self.points[target].spot
+        if one is None or two is None:
             return None
-        square = (one.x - two.x) ** 2 + (one.y - two.y) ** 2
+        square = (one[0] - two[0]) ** 2 + (one[1] - two[1]) ** 2
         return 1 + isqrt(square - 1) if square else 0
 
 

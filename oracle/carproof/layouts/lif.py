@@ -9,10 +9,11 @@ is a turn on the spot (section 10.9).
 
 from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
-from fractions import Fraction
+from math import ceil
 
-from carproof.layouts.layout import Layout, Reader
+from carproof.layouts.layout import Layout, Reader, spot
 from carproof.layouts.located import METRE, Tree
+from carproof.layouts.strips import Spot, Track, length_of
 
 NODES = ("vehicleTypeNodeProperties", "mobileRobotTypeNodeProperties")
 EDGES = ("vehicleTypeEdgeProperties", "mobileRobotTypeEdgeProperties")
@@ -126,17 +127,9 @@ def _types(layout: Layout, thing: Tree, names: tuple[str, ...]) -> list[Tree]:
 
 def _edge(layout: Layout, edge: Tree) -> None:
     name, ends = edge["edgeId"].quoted_text, (edge["startNodeId"].quoted_text, edge["endNodeId"].quoted_text)
-    speeds: list[Fraction | None] = []
-    lengths: list[Fraction | None] = []
-    for each in _types(layout, edge, EDGES):
-        guided, curve = each.get("physicalLineGuidedProperty"), each.get("trajectory")
-        speeds.append(each.metres("maxSpeed", "maximumSpeed"))
-        lengths.append(None if guided is None else guided.metres("length"))
-        if curve is not None:
-            layout.note(
-                "the shape of trajectories; their length is that of the control polygon, which is no less", curve
-            )
-            lengths.append(_polygon(curve))
+    types = _types(layout, edge, EDGES)
+    speeds = [each.metres("maxSpeed", "maximumSpeed") for each in types]
+    tracks = [_track(layout, each) for each in types]
     stays = ends[0] != ends[1] and layout.points.keys() >= set(ends) and layout.distance(*ends) == 0
     if stays and layout.places[ends[0]] == layout.places[ends[1]]:
         layout.note(
@@ -150,19 +143,23 @@ def _edge(layout: Layout, edge: Tree) -> None:
         ends,
         level=not stays,
         speed=min((each for each in speeds if each), default=None),
-        length=max((each for each in lengths if each), default=None),
+        length=max((each.length for each in tracks if each.length), default=None),
+        tracks=tracks,
     )
 
 
-def _polygon(curve: Tree) -> Fraction:
-    """The length of the polygon of the control points; a curve with weights above 0 is no longer."""
-    layout, places = Layout(curve), curve["controlPoints"].entries
-    total = 0
-    for number, place in enumerate(places):
-        at = (METRE * place["x"].number, METRE * place["y"].number)
-        layout.point(place, str(number), at)
-        total += layout.distance(str(max(0, number - 1)), str(number)) or 0
-    return Fraction(total)
+def _track(layout: Layout, properties: Tree) -> Track:
+    """What the properties say; a curve is no longer than the polygon of its control points."""
+    guided, curve = properties.get("physicalLineGuidedProperty"), properties.get("trajectory")
+    given = None if guided is None else guided.metres("length")
+    course = () if curve is None else _course(curve)
+    layout.note("the shape of trajectories; their length is that of the control polygon, which is no less", curve)
+    return Track(max(0 if given is None else ceil(given), length_of(course)) or None, course)
+
+
+def _course(curve: Tree) -> tuple[Spot, ...]:
+    places = curve["controlPoints"].entries
+    return tuple(spot(each, (METRE * each["x"].number, METRE * each["y"].number)) for each in places)
 
 
 READER = Reader(

@@ -53,10 +53,11 @@ def _middle(one: int | None, two: int | None) -> int | None:
 
 def _groups(layout: Layout, settings: Settings) -> Iterator[Group]:
     """The strips with two lanes, points at one place, the ends that vehicles on lanes hold, blocks, and footprints."""
-    strips: dict[str, list[str]] = {}
+    strips: dict[object, list[str]] = {}
     at: dict[str, list[str]] = {each: [each] for each in layout.points}
     for lane in layout.lanes.values():
-        strips.setdefault(lane.strip, []).append(lane.id)
+        for strip in lane.strips:
+            strips.setdefault(strip, []).append(lane.id)
         at[lane.source].append(lane.id)
         if lane.target != lane.source:
             at[lane.target].append(lane.id)
@@ -70,7 +71,8 @@ def _groups(layout: Layout, settings: Settings) -> Iterator[Group]:
 
     if layout.holds_ends:
         yield from (Group(named(f"at {point}"), tuple(held)) for point, held in at.items() if len(held) > 1)
-    yield from (Group(named(f"strip {name}"), tuple(lanes)) for name, lanes in strips.items() if len(lanes) > 1)
+    shared = dict.fromkeys(tuple(lanes) for lanes in strips.values() if len(lanes) > 1)
+    yield from (Group(named(f"strip {lanes[0]}"), lanes) for lanes in shared)
     yield from (Group(named(f"place {name}"), held) for name, held in _at_one_place(layout) if len(held) > 1)
     yield from (Group(each.id, each.members) for each in layout.blocks.values())
     if settings.footprint is not None:
