@@ -59,7 +59,7 @@ def _pitch(layout: Layout, along: Callable[[Point], int]) -> int:
 
 def _copy(layout: Layout, whole: Layout, tile: str, x: int, y: int) -> None:
     for point in layout.points.values():
-        whole.points[tile + point.id] = Point(tile + point.id, x + _x(point), y + _y(point), point.stands)
+        whole.points[tile + point.id] = replace(point, id=tile + point.id, x=x + _x(point), y=y + _y(point))
     for lane in layout.lanes.values():
         source, target = tile + lane.source, tile + lane.target
         strips = tuple(replace(each, ends=frozenset(tile + end for end in each.ends)) for each in lane.strips)

@@ -2,7 +2,8 @@
 
 A rectangle on a lane sweeps a longer one along it. At a point it turns, and sweeps the disc around it, unless all lanes
 there lie along one line. A round vehicle sweeps all points that are nearer than its radius. Shapes that only touch do
-not meet. Lanes are taken as straight.
+not meet. Lanes are taken as straight. What is on another level is above or below, and never in the way; a lane between
+levels is on both.
 
 Positions are doubled, so that half a length is whole. Of the two directions of a lane, with squared lengths p and q, a
 comparison is about the sign of a + b sqrt(p) + c sqrt(q), which squaring decides.
@@ -22,19 +23,23 @@ Vector = tuple[int, int]
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """What is swept from `start` along `way`; `heading` is that of the vehicle, `None` where it turns or is round."""
+    """What is swept from `start` along `way`; `heading` is that of the vehicle, `None` where it turns or is round.
+
+    It is on its `levels`; on any where there are none.
+    """
 
     members: tuple[str, ...]
     start: Vector
     way: Vector
     heading: Vector | None
+    levels: frozenset[str]
 
 
 def conflicts(layout: Layout, size: Footprint) -> Iterator[Group]:
     """The groups: for each two shapes that meet, their points and lanes."""
     shapes = list(_shapes(layout, size))
     for one, two in _near(shapes, size):
-        if _meet(one, two, size):
+        if _share_a_level(one, two) and _meet(one, two, size):
             yield Group(f"{one.members[0]} | {two.members[0]}", (*one.members, *two.members))
 
 
@@ -55,11 +60,22 @@ def _shapes(layout: Layout, size: Footprint) -> Iterator[Shape]:
     for name, place in at.items():
         along = ways[name][:1]
         turns = not along or any(_cross(along[0], way) for way in ways[name])
-        yield Shape((name,), place, (0, 0), None if turns or size.round else along[0])
+        yield Shape((name,), place, (0, 0), None if turns or size.round else along[0], _levels(layout, name))
     for lanes in strips.values():
         lane = layout.lanes[lanes[0]]
         way = _from(at[lane.source], at[lane.target])
-        yield Shape(tuple(lanes), at[lane.source], way, None if size.round or way == (0, 0) else way)
+        heading = None if size.round or way == (0, 0) else way
+        yield Shape(tuple(lanes), at[lane.source], way, heading, _levels(layout, lane.source, lane.target))
+
+
+def _levels(layout: Layout, *points: str) -> frozenset[str]:
+    """The levels of the points; none if that of a point is not known."""
+    levels = [layout.points[each].level for each in points]
+    return frozenset() if None in levels else frozenset(each for each in levels if each is not None)
+
+
+def _share_a_level(one: Shape, two: Shape) -> bool:
+    return not (one.levels and two.levels) or not one.levels.isdisjoint(two.levels)
 
 
 def _near(shapes: Sequence[Shape], size: Footprint) -> Iterator[tuple[Shape, Shape]]:

@@ -15,15 +15,22 @@ from carproof.layouts.strips import Spot, Strip, Track, strip_of
 SILENT = frozenset(("<>", "text", "xmlns", "xmlns:xsi", "xsi:schemaLocation"))
 """Of XML, what says nothing of a layout."""
 
+PLANE = "check --footprint takes the positions of all as one plane"
+"""Of points on several levels, which an instance does not tell apart."""
+
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """A place at which a vehicle can be; `stands` is whether it may stay there for long."""
+    """A place at which a vehicle can be; `stands` is whether it may stay there for long.
+
+    Vehicles on two different levels are above each other; without a level a point may be on any.
+    """
 
     id: str
     x: int | None
     y: int | None
     stands: bool
+    level: str | None = None
 
     @property
     def spot(self) -> Spot | None:
@@ -153,12 +160,20 @@ class Layout:
             if id not in self.points:
                 raise at.refuse(f"the point {id!r} must be one of the layout")
 
-    def point(self, at: Tree, id: str, place: tuple[Fraction, Fraction] | None, *, stands: bool = True) -> None:
+    def point(
+        self,
+        at: Tree,
+        id: str,
+        place: tuple[Fraction, Fraction] | None,
+        *,
+        stands: bool = True,
+        level: str | None = None,
+    ) -> None:
         """Add a point, at a place in mm."""
         if id in self.points:
             raise at.refuse(f"the point {id!r} must be given once")
         x, y = (None, None) if place is None else spot(at, place)
-        self.points[id] = Point(id, x, y, stands)
+        self.points[id] = Point(id, x, y, stands, level)
 
     def lane(  # noqa: PLR0913 - one for each fact of a lane
         self,

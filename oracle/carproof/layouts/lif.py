@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from collections.abc import Set as AbstractSet
 from math import ceil
 
-from carproof.layouts.layout import Layout, Reader, spot
+from carproof.layouts.layout import PLANE, Layout, Reader, spot
 from carproof.layouts.located import METRE, Tree
 from carproof.layouts.strips import Spot, Track, length_of
 
@@ -106,11 +106,11 @@ def _nodes(layout: Layout, layouts: Sequence[Tree], served: AbstractSet[str]) ->
     for node in (node for each in layouts for node in each["nodes"].entries):
         name, place, level = node["nodeId"].quoted_text, node["nodePosition"], node.get("mapId")
         at = (METRE * place["x"].number, METRE * place["y"].number)
-        layout.point(node, name, at, stands=not served or name in served)
-        _types(layout, node, NODES)
         map = None if level is None else level.quoted_text
+        layout.point(node, name, at, stands=not served or name in served, level=map)
+        _types(layout, node, NODES)
         if main is not None and map not in (None, main):
-            layout.note("maps beside the first; the positions of all are in one plane", level)
+            layout.note(f"maps beside the first; {PLANE}", level)
         main = map if main is None else main
         layout.places[name] = first.setdefault((map, layout.points[name].x, layout.points[name].y), name)
 

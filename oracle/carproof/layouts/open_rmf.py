@@ -13,7 +13,7 @@ from fractions import Fraction
 from functools import partial
 from math import isqrt
 
-from carproof.layouts.layout import Layout, Reader
+from carproof.layouts.layout import PLANE, Layout, Reader
 from carproof.layouts.located import METRE, Tree
 
 FINE = 10**9
@@ -77,7 +77,7 @@ def read(tree: Tree) -> Layout:
         if is_drawn:
             scale = _scale(layout, level, scale)
             onto = partial(_drawn, scale)
-        ids = _vertices(layout, level, onto, f"{name}/" if len(levels) > 1 else "")
+        ids = _vertices(layout, level, onto, name if len(levels) > 1 else None)
         for lane in level.all("lanes"):
             _lane(layout, lane, ids, groups)
         for (vertex, options), id in zip(_options(level), ids, strict=True):
@@ -86,7 +86,9 @@ def read(tree: Tree) -> Layout:
         layout.note("doors", level.get("doors"))
     _remove_unused(layout, {end for lane in layout.lanes.values() for end in (lane.source, lane.target)})
     if len(levels) > 1:
-        layout.note("the alignment of levels by fiducials; each level keeps its own positions", tree["levels"])
+        layout.note(
+            f"the alignment of levels by fiducials; each level keeps its own positions, and {PLANE}", tree["levels"]
+        )
     for group, members in groups.items():
         there = [(at, each) for at, each in members if each in layout.points or each in layout.lanes]
         if there:
@@ -178,9 +180,10 @@ def _around(levels: Iterable[Tree]) -> Onto:
     return lambda x, y: ((x - origin[0]) * east, (y - origin[1]) * north)
 
 
-def _vertices(layout: Layout, level: Tree, onto: Onto, prefix: str) -> list[str]:
-    """Add the vertices, and return their ids: the name, or the index where there is none or a second."""
-    ids = []
+def _vertices(layout: Layout, level: Tree, onto: Onto, floor: str | None) -> list[str]:
+    """Add the vertices of a floor, if it is one of several, and return their ids: the name, or else the index."""
+    ids: list[str] = []
+    prefix = "" if floor is None else f"{floor}/"
     for number, (vertex, options) in enumerate(_options(level)):
         given = options.get("name")
         if given is None and len(vertex.entries) > 3:  # noqa: PLR2004 - x, y, z, name
@@ -191,7 +194,8 @@ def _vertices(layout: Layout, level: Tree, onto: Onto, prefix: str) -> list[str]
             id = f"{prefix}{name} {number}"
         at = onto(*_place(vertex))
         flags = [_plain(options.get(each)) for each in STANDS]
-        layout.point(vertex, id, at, stands=bool(name) or any(each is not None and each.is_true for each in flags))
+        stands = bool(name) or any(each is not None and each.is_true for each in flags)
+        layout.point(vertex, id, at, stands=stands, level=floor)
         _note_others(layout, options, OF_VERTICES, LEFT_OUT_AT_VERTICES)
         robot = _plain(options.get("spawn_robot_name"))
         if robot is not None and robot.value:

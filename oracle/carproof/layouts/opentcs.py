@@ -7,14 +7,18 @@ frees what lies behind when it has arrived. So who is on a path holds both its e
 """
 
 import re
+from collections.abc import Iterable
 from collections.abc import Set as AbstractSet
+from fractions import Fraction
 
-from carproof.layouts.layout import Layout, Reader
+from carproof.layouts.layout import PLANE, Layout, Reader
 from carproof.layouts.located import Tree, elements
 
 VERSIONS = re.compile(r"0\.0\.[45]|[67](\.\d+)*")
 KINDS = ("HALT_POSITION", "PARK_POSITION", "REPORT_POSITION")
 NAMED = ("point", "path", "locationType", "location", "block", "vehicle")
+STOREY = 2000
+"""How much higher points are, in mm, below which vehicles drive."""
 SPEEDS = "speeds of vehicles; --speed sets one for all"
 LEFT_OUT = {
     "<property>": "properties",
@@ -42,10 +46,14 @@ def read(tree: Tree) -> Layout:
     layout = Layout(tree, holds_ends=True)
     kinds = _names(tree)
     served = {link["point"].text for location in elements(tree, "location") for link in elements(location, "link")}
-    for point in elements(tree, "point"):
+    points = list(elements(tree, "point"))
+    storeys = _storeys(map(_height, points))
+    for point in points:
         for each in elements(point, "outgoingPath"):
             _require_named(each["name"], kinds["path"], "path")
-        _point(layout, point, served)
+        _point(layout, point, served, storeys[_height(point)])
+        if _height(point) != _height(points[0]):
+            layout.note(f"heights of points; {PLANE}", point)
     paths = {path["name"].text: _path(layout, path) for path in elements(tree, "path")}
     for location in elements(tree, "location"):
         if kinds["locationType"]:
@@ -80,13 +88,28 @@ def _require_named(name: Tree, names: set[str], what: str) -> None:
 _PLACES = (("positionX", "xPosition"), ("positionY", "yPosition"))
 
 
-def _point(layout: Layout, point: Tree, served: AbstractSet[str]) -> None:
+def _height(point: Tree) -> Fraction:
+    height = point.get("positionZ", "zPosition")
+    return Fraction(0) if height is None else height.number
+
+
+def _storeys(heights: Iterable[Fraction]) -> dict[Fraction, str]:
+    """The level of each height; one begins where a vehicle has room above the next lower height."""
+    found: dict[Fraction, str] = {}
+    before = None
+    for height in sorted(set(heights)):
+        found[height] = str(height) if before is None or height - before >= STOREY else found[before]
+        before = height
+    return found
+
+
+def _point(layout: Layout, point: Tree, served: AbstractSet[str], level: str) -> None:
     """Add a point; vehicles stand at park positions and where a location is served."""
     name, kind = point["name"].text, point.says("type")
     if kind not in (None, *KINDS):
         raise point["type"].refuse(f"the type must be {', '.join(KINDS)}, not {point['type'].shown}")
     x, y = (point.get(each, other) or point[each] for each, other in _PLACES)
-    layout.point(point, name, (x.number, y.number), stands=kind == "PARK_POSITION" or name in served)
+    layout.point(point, name, (x.number, y.number), stands=kind == "PARK_POSITION" or name in served, level=level)
     if kind == "REPORT_POSITION":
         layout.note("report positions, at which vehicles may not halt", point)
     layout.note("properties of points and paths", point.get("<property>"))
