@@ -127,10 +127,12 @@ def _types(layout: Layout, thing: Tree, names: tuple[str, ...]) -> list[Tree]:
 
 def _edge(layout: Layout, edge: Tree) -> None:
     name, ends = edge["edgeId"].quoted_text, (edge["startNodeId"].quoted_text, edge["endNodeId"].quoted_text)
+    layout.require_points(edge, *ends)
+    distance = layout.distance(*ends) or 0
     types = _types(layout, edge, EDGES)
     speeds = [each.metres("maxSpeed", "maximumSpeed") for each in types]
-    tracks = [_track(layout, each) for each in types]
-    stays = ends[0] != ends[1] and layout.points.keys() >= set(ends) and layout.distance(*ends) == 0
+    tracks = [_track(layout, each, distance) for each in types]
+    stays = ends[0] != ends[1] and not distance
     if stays and layout.places[ends[0]] == layout.places[ends[1]]:
         layout.note(
             "turns on the spot, from node to node at one place; they take a tick unless a length is given", edge
@@ -148,13 +150,14 @@ def _edge(layout: Layout, edge: Tree) -> None:
     )
 
 
-def _track(layout: Layout, properties: Tree) -> Track:
-    """What the properties say; a curve is no longer than the polygon of its control points."""
+def _track(layout: Layout, properties: Tree, distance: int) -> Track:
+    """What the properties say: a curve is no longer than the polygon of its control points, and leads to the end."""
     guided, curve = properties.get("physicalLineGuidedProperty"), properties.get("trajectory")
     given = None if guided is None else guided.metres("length")
     course = () if curve is None else _course(curve)
     layout.note("the shape of trajectories; their length is that of the control polygon, which is no less", curve)
-    return Track(max(0 if given is None else ceil(given), length_of(course)) or None, course)
+    least = ceil(given) if given is not None else distance if course else 0
+    return Track(max(least, length_of(course)) or None, course)
 
 
 def _course(curve: Tree) -> tuple[Spot, ...]:

@@ -122,7 +122,7 @@ def _path(layout: Layout, path: Tree) -> tuple[str, ...]:
     """Add a path, and return its lanes; none if it is locked."""
     name, source, target = (path[each].text for each in ("name", "sourcePoint", "destinationPoint"))
     forward, backward = (path[each].number for each in ("maxVelocity", "maxReverseVelocity"))
-    length = path["length"].positive
+    length = _length(layout, path, (source, target))
     if min(forward, backward) < 0:
         raise path.refuse("the speeds of a path must not be below 0")
     layout.note("properties of points and paths", path.get("<property>"))
@@ -144,6 +144,14 @@ def _path(layout: Layout, path: Tree) -> tuple[str, ...]:
             backwards=bool(backward),
         )
     return layout.lane(path, name, (target, source), speed=backward, length=length, backwards=True)
+
+
+def _length(layout: Layout, path: Tree, ends: tuple[str, str]) -> Fraction:
+    """The length; versions 0.0.4 and 0.0.5 may leave it out, where it is the distance of the points, and at least 1."""
+    if path.get("length") is None and layout.tree["version"].text.startswith("0.0."):
+        layout.require_points(path, *ends)
+        return Fraction(max(1, layout.distance(*ends) or 0))
+    return path["length"].positive
 
 
 def _block(layout: Layout, block: Tree, paths: dict[str, tuple[str, ...]], locations: set[str]) -> None:
