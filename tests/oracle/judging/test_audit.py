@@ -11,11 +11,10 @@ from hypothesis import strategies as st
 from tests.oracle.running import EAST, EAST_PLAN, Run, corridor, line, save, solution, town
 
 import carp_reference
-from carp_spec import Carp, Plan, RobotId, Solution, plan_cost, violations_of
+from carp_spec import Plan, RobotId, Solution, plan_cost, violations_of
 from carp_verify.bound.rules import ContradictionError
 from carproof import QueryCertificateDocument, read_instance, read_solution
 from carproof.engines import engine_named
-from carproof.generate import Fleet, Grid, Range, grid_instance
 from carproof.judging.audit import audit_in_order, audit_in_some_order, in_order
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
 
@@ -114,16 +113,6 @@ def test_what_there_is_no_time_for_is_undecided(planned: PlannedInstance, most: 
 
 def _ordered(planned: PlannedInstance, order: tuple[RobotId, ...]) -> Solution:
     return replace(planned.solution, order=order)
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_plans_of_both_engines_are_certified(seed: int) -> None:
-    fleet = Fleet(24, seed=seed)
-    picking = replace(fleet, orders="pick-and-drop", service=Range(2, 4))
-    instance = grid_instance(Grid(8, 8, map=8), picking if seed == 2 else fleet)
-    planned = REFERENCE.plan(instance, Carp())
-    for engine in ("reference", "optimized"):
-        assert audit_in_order(instance, planned, engine_named(engine)).holds
 
 
 class Wrong:
