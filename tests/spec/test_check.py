@@ -208,12 +208,6 @@ def test_a_plan_through_a_hub_of_very_many_moves_is_checked_in_time() -> None:
     assert process_time() - started < 2
 
 
-def test_a_plan_without_visits_has_no_start_and_no_goal_and_nowhere_has_no_moves() -> None:
-    assert rules_broken(VANISHING, (plan_of("r1"),)) == ["plan/start", "plan/goal"]
-    lost = plan_of("r1", ("a", 0, 2), ("x", 2, 3), ("b", 3, 4))
-    assert rules_broken(VANISHING, (lost,)) == ["plan/goal", "plan/resource"]
-
-
 def test_a_verdict_sums_the_costs_and_counts_the_unplanned() -> None:
     """A plan without visits adds no cost, and counts as a plan."""
     for solution, expected in (

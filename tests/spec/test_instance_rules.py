@@ -4,19 +4,10 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from hypothesis import given
 from tests.spec.making import PARKING, VANISHING, instance_on, line
-from tests.spec.strategies import FEWER, SIZES
 
 from carp_spec import Group, Instance, Resource, ResourceGraph, Robot
 from carp_spec.instance_rules import INSTANCE_RULES, instance_faults
-from carproof.testing.strategies import instances
-
-
-@FEWER
-@given(instance=instances(SIZES))
-def test_a_right_instance_has_no_faults(instance: Instance) -> None:
-    assert instance_faults(instance) == ()
 
 
 def on_edges(*edges: tuple[str, str], directed: bool = False) -> Instance:
