@@ -201,6 +201,7 @@ REFUSED = (
     ("convert plant.xml --at 3", "--at"),
     ("check town.json plans.json --cells 1m", "--cells"),
     ("check town.json plans.json --footprint 450mm --cells 0.5mm", "--cells"),
+    ("check town.json plans.json --z3 --kernel", "--kernel and --z3 both decide: give one of them."),
     ("release town.json plans.json trace-early.json --seconds 0", "--seconds"),
     ("audit town.json plans.json --seconds nan", "--seconds"),
     # experiments

@@ -16,7 +16,7 @@ from carp_verify.footprint.rules import Footprint
 from carp_verify.kernel import KernelVerdict, ask, request
 from carproof.api.judging import check
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import Output, naming, print_document
+from carproof.command_line.files import Output, naming
 from carproof.command_line.foreign import Problem, solution_files
 from carproof.command_line.options import kernel_option, listed, output_options, read_by
 from carproof.command_line.output import show_violations
@@ -91,9 +91,11 @@ def command(  # noqa: PLR0913 - an argument an option
     """
     if footprint is not None and (kernel or z3):
         raise click.UsageError("--kernel and --z3 decide the law alone, which has no sizes; check --footprint apart.")
+    if kernel and z3:
+        raise click.UsageError("--kernel and --z3 both decide: give one of them.")
     instance, given, _ = problem.read(as_named=True)
     if z3:
-        return certified(instance, given, output.as_json)
+        return certified(instance, given, output, require_all)
     most = None if everything else MOST_LISTED
     with naming(problem.name):
         verdict = check(instance, given, most, footprint, cells)
@@ -118,8 +120,8 @@ def kernel_verdict(instance: Instance, solution: Solution, verdict: Verdict) -> 
     return answer
 
 
-def certified(instance: Instance, solution: Solution, as_json: bool) -> Answer:
-    """Print what z3 says of a solution that `check` accepts: too full at no tick at all, and no exchange."""
+def certified(instance: Instance, solution: Solution, output: Output, require_all: bool) -> Answer:
+    """Tell what z3 says of a solution that `check` accepts: too full at no tick at all, and no exchange."""
     from carp_verify.certificate import certify, visited  # noqa: PLC0415 - loads z3
     from carp_verify.lemmas.smt import Undecided  # noqa: PLC0415
 
@@ -130,9 +132,10 @@ def certified(instance: Instance, solution: Solution, as_json: bool) -> Answer:
     except Undecided as undecided:
         remark(f"Undecided: {undecided}.")
         return Answer.UNDECIDED
-    if as_json:
-        print_document(json.dumps({"accepted": found.accepted, **asdict(found)}).encode() + b"\n")
-        return Answer.of(found.accepted)
+    unplanned = len(instance.robots) - len(solution.plans)
+    answer = Answer.of(found.accepted and not (require_all and unplanned))
+    if not output.write(json.dumps({"accepted": found.accepted, **asdict(found)}).encode() + b"\n"):
+        return answer
     for broken in (*found.violations, *found.breaches):
         print_line(str(broken))
     asked = f"{found.resources} resources and groups and {found.pairs} pairs of them"
@@ -143,4 +146,6 @@ def certified(instance: Instance, solution: Solution, as_json: bool) -> Answer:
     else:
         outcome = f"REFUSED: z3 finds {counted(len(found.breaches), 'tick')} at which a rule is broken in {asked}"
     print_line(f"{outcome} in {perf_counter() - started:.1f} s")
-    return Answer.of(found.accepted)
+    if found.accepted and answer is Answer.NO:
+        print_line(f"INCOMPLETE: unplanned robots {unplanned}")
+    return answer
