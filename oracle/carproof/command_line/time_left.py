@@ -1,5 +1,6 @@
 """The time of a whole command: from its start to the last line that it prints."""
 
+from sys import float_info
 from time import perf_counter
 from typing import TypeVar
 
@@ -19,7 +20,7 @@ def time_left(context: click.Context, seconds: S, compiling: float = 0.0, judgin
 
     The answer is judged in `judging` seconds.
     """
-    if not (seconds and seconds > 0):
+    if not (seconds and 0 < seconds <= float_info.max):
         return seconds
     started: float = context.find_root().obj
     return max(seconds + compiling - (perf_counter() - started) - judging - ENDING, HARDLY_ANY)

@@ -6,7 +6,7 @@ import click
 
 from carp_spec import Instance, judge, total_cost
 from carp_spec.documents.decoding import write
-from carp_spec.inputs.options import BOUND_SECONDS
+from carp_spec.inputs.options import BOUND_SECONDS, require_limits
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, Output, naming
 from carproof.command_line.foreign import MovingAI, Problem, benchmark_options, from_option, read_solution_of
@@ -62,6 +62,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     if (instance is None) == (benchmark is None):
         raise click.UsageError("Give INSTANCE, or --map and --scen.")
+    require_limits(seconds=seconds, steps=steps)
     given = Problem(instance, benchmark)
     problem = given.read_instance()
     with naming(given.name):
