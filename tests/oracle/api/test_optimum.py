@@ -43,6 +43,14 @@ def test_an_undecided_search_says_so_and_gives_its_bound(carproof: Run) -> None:
     assert document["lower"] > 1000
 
 
+def test_without_its_proof_an_optimum_is_not_written(carproof: Run, folder: Path) -> None:
+    (folder / "proof" / "manifest.json").mkdir(parents=True)
+    outcome = carproof("optimum town.json --proof proof -o best.json")
+    assert (outcome.code, outcome.stdout) == (2, "")
+    assert outcome.stderr.startswith("Error: proof: it cannot be written: ")
+    assert not (folder / "best.json").exists()
+
+
 def test_a_proof_about_which_z3_does_not_answer_is_undecided(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     assert carproof("optimum town.json --proof proof").code == 0
     monkeypatch.setattr("carp_verify.optimum.proof._ask_z3", lambda *_: "unknown")

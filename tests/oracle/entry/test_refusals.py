@@ -157,6 +157,7 @@ REFUSED = (
     ),
     ("verify town.json bound-scale.json", "bound-scale.json: $.scale: ", "[document/shape]"),
     ("optimum town.json --proof town.json", "town.json"),
+    ("optimum comma.json --proof town.json/proof", "town.json/proof: it cannot be written: "),
     ("verify nowhere", "nowhere"),
     # instances and pictures
     ("generate grid --width 0", "--width: it must be between 1 and 1073741824, not 0 [generate/options]"),

@@ -1,6 +1,7 @@
 """`carproof optimum`: the least total cost of plans for all robots, with a proof if asked for."""
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -36,7 +37,12 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "cost", "answer", "time")
 @click.option(
     "--processes", type=click.IntRange(1, MOST_PROCESSES), default=PROCESSES, help="Two search faster on two cores."
 )
-@click.option("--proof", type=click.Path(file_okay=False, path_type=Path), help="Write a proof into this folder.")
+@click.option(
+    "--proof",
+    type=click.Path(file_okay=False, path_type=Path),
+    callback=lambda _, __, folder: folder and _writable(folder),
+    help="Write a proof into this folder.",
+)
 @output_options
 @click.pass_context
 def command(
@@ -62,9 +68,9 @@ def command(
     started = perf_counter()
     best = optimum(problem, time_left(context, limit, compiling), processes=processes)
     seconds = perf_counter() - started
+    is_proved = proof is not None and best.decided and _prove(proof, problem, best, limit)
     if output.file is not None and best.solution is not None:
         write_whole(output.file, write_solution(best.solution))
-    is_proved = proof is not None and best.decided and _prove(proof, problem, best, limit)
     if output.as_json:
         print_document(write(optimum_document(best, is_proved)))
     else:
@@ -80,6 +86,16 @@ def command(
     if not best.decided or (proof is not None and not is_proved):
         return Answer.UNDECIDED
     return Answer.of(best.cost is not None)
+
+
+def _writable(folder: Path) -> Path:
+    """The folder of the proof; one that can be neither made nor written into is refused before the search."""
+    try:
+        nearest = next(each for each in (folder, *folder.absolute().parents) if each.exists())
+        TemporaryDirectory(dir=nearest).cleanup()
+    except OSError as error:
+        raise click.ClickException(f"{folder}: it cannot be written: {error.strerror}") from error
+    return folder
 
 
 def _prove(folder: Path, instance: Instance, best: "Optimum", limit: int) -> bool:
