@@ -10,7 +10,16 @@ import click
 from carp_spec import FixedPaths, Instance, Neighbourhood, RobotId, Shuffled, Solution
 from carp_spec.inputs.options import SEARCH_SECONDS
 from carp_spec.requests import require_tick, sound_solution
-from carproof.command_line.files import InputFile, Output, OutputFile, naming, read_instance_file, read_solution_file
+from carproof.command_line.files import (
+    STANDARD_OUTPUT,
+    WRITTEN,
+    InputFile,
+    Output,
+    OutputFile,
+    naming,
+    read_instance_file,
+    read_solution_file,
+)
 from carproof.engines import ENGINES
 from carproof.generate import Range
 from carproof.planner_options import PLANNERS, planner_named
@@ -73,6 +82,13 @@ def listed(summary: str, *lines: str) -> Callable[[Callable[..., Any]], click.Co
     return click.command(short_help=summary, epilog=examples(*lines))
 
 
+def _alone(context: click.Context, param: click.Parameter, as_json: bool) -> bool:
+    """Refuse --json where another option writes to standard output."""
+    if as_json and context.meta.setdefault(WRITTEN, {}).setdefault(STANDARD_OUTPUT, param) is not param:
+        raise click.BadParameter("another option writes to standard output too.", context, param)
+    return as_json
+
+
 instance_argument = click.argument("instance", type=InputFile())
 solution_argument = click.argument("solution", type=InputFile())
 trace_argument = click.argument("trace", type=InputFile())
@@ -84,7 +100,11 @@ output_option = click.option(
     help="Write the document to this file, whole or not at all; - is standard output.",
 )
 json_option = click.option(
-    "--json", "as_json", is_flag=True, help="Print the document on standard output, and nothing else."
+    "--json",
+    "as_json",
+    is_flag=True,
+    callback=_alone,
+    help="Print the document on standard output, and nothing else.",
 )
 output_options = gathered("output", Output, output_option, json_option)
 kernel_option = click.option("--kernel", is_flag=True, help="Let the proved kernel decide; `make kernel` builds it.")

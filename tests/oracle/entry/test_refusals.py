@@ -122,6 +122,14 @@ REFUSED = (
     (f"{ASSIGN} r9 d", "Error: ROBOT: the instance must have the robot, and has no 'r9' [request/robot]"),
     (f"{ASSIGN} r2 d -o ./after.json", "another option writes there too"),
     (f"{ASSIGN} r2 d -o - --instance -", "another option writes there too"),
+    # standard output
+    ("plan town.json --json -o -", "'-o': -: another option writes there too."),
+    ("plan town.json -o - --json", "'--json': another option writes to standard output too."),
+    ("check town.json plans.json --json -o -", "another option writes there too"),
+    ("generate grid --json -o -", "another option writes there too"),
+    ("query town.json one.json r2 --certificate - --json", "another option writes to standard output too"),
+    (f"{ASSIGN.replace('after.json', '-')} r2 d --json", "another option writes to standard output too"),
+    ("execution simulate town.json plans.json --driver order --trace - --json", "another option writes to standard"),
     # executions
     ("execution retime east.json east-plans.json trace-early.json", "trace-early.json: $.", "[trace/ticks]"),
     ("execution retime east.json east-plans.json east-plans.json", "east-plans.json: $.", "[document/format]"),

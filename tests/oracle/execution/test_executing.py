@@ -71,6 +71,12 @@ def test_robots_of_a_rotation_stand_where_dependencies_name_it(carproof: Run) ->
         assert carproof("execution check ring.json turning.json end.json").code == 0
 
 
+def test_the_results_of_all_drivers_are_one_document(carproof: Run) -> None:
+    results = json.loads(carproof("execution simulate train.json plans.json --json").stdout)
+    assert [each["driver"] for each in results] == ["clock", "order", "switching"]
+    assert json.loads(carproof("execution simulate train.json plans.json --driver order --json").stdout) == results[1]
+
+
 def test_a_picture_shows_a_rotation_as_a_circle_of_arrows(carproof: Run, elsewhere: Path) -> None:
     for name, waits, cycle in (("ring.json turning.json", 0, 4), ("train.json plans.json", 1, 0)):
         carproof(f"execution dependencies {name} --svg graph.svg")

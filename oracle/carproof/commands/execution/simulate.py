@@ -64,7 +64,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     0.
 
     Mean and worst count the ticks by which robots arrive later than planned. Collisions are of too many robots in a
-    resource or a group, and of robots that exchange places; where following is forbidden, following is none.
+    resource or a group, and of robots that exchange places; where following is forbidden, following is none. --json
+    prints the result of --driver, or without it a list of all three.
 
     After switches a plan of --followed may begin later than its release, which breaks plan/start; the trace is then one
     of SOLUTION no more.
@@ -86,8 +87,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     if followed is not None:
         write_whole(followed, write_solution(executions[0].followed))
     if as_json:
-        for execution in executions:
-            print_document(write(execution_document(execution)))
+        results = [execution_document(execution) for execution in executions]
+        print_document(write(results if driver is None else results[0]))
     else:
         print_table(COLUMNS, [row_of(execution) for execution in executions], numbers=COLUMNS[1:])
         for execution in executions:
