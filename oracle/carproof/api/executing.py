@@ -1,7 +1,6 @@
 """Executions of solutions by robots that are late."""
 
 from collections.abc import Sequence
-from math import inf
 from time import perf_counter
 
 from carp_reference.execution import order_of
@@ -9,14 +8,13 @@ from carp_spec import Instance, Refusal, RobotId, Solution, Visit
 from carp_spec.execution.execution_rules import require_followed
 from carp_spec.execution.traces import Trace
 from carp_spec.requests import require_robot, require_tick, require_trace, sound_solution
-from carp_spec.rule import is_between
 from carp_spec.shapes import require_each
 from carp_verify.release.rules import Grant
 from carproof.engines import engine_named
 from carproof.execution.delays import Delay, may_enter
 from carproof.execution.giving_way import GivenWay
 from carproof.execution.giving_way import give_way as way_given
-from carproof.execution.releasing import MOST_STATES, GrantsVerdict, Released, Releasing
+from carproof.execution.releasing import GrantsVerdict, Released, Releasing, limit_of
 from carproof.execution.simulation import DRIVERS, Driver, Execution, delays_are_right, require_delays
 from carproof.execution.simulation import execute as executed
 from carproof.execution.untangling import Untangled
@@ -101,7 +99,7 @@ def release(
     states: 20,000 if neither is given. Raises `Refusal` for a solution that breaks a rule or has rotations, and for a
     trace that does not keep to its paths and durations.
     """
-    limit = _limit(states, seconds)
+    limit = limit_of(states, seconds)
     require_each(beyond, RobotId, "$.beyond")
     situation = Releasing(instance, solution, trace)
     for robot in beyond:
@@ -122,14 +120,6 @@ def check_grants(
     The answer is undecided if a search would take more than so many states or seconds, 20,000 states if neither is
     given. Raises `Refusal` as `release` does, and for grants of other than the next resources of plans.
     """
-    limit = _limit(states, seconds)
+    limit = limit_of(states, seconds)
     require_each(grants, Grant, "$.grants")
     return Releasing(instance, solution, trace).check(grants, *limit)
-
-
-def _limit(states: int | None, seconds: float | None) -> tuple[float, float]:
-    """The states of each search, and when all must have ended, if they begin now."""
-    if states is not None and not is_between(states, 1):
-        message = f"it must be a whole number of at least 1, not {states!r}"
-        raise Refusal("option", "$.states", "request/limit", message)
-    return states or (MOST_STATES if seconds is None else inf), deadline(seconds)

@@ -17,16 +17,26 @@ from carp_spec.execution.dependencies import Node, Stay, stays_by_constraint
 from carp_spec.execution.execution_rules import EXECUTION_RULES, TRACE_RULES, is_acyclic
 from carp_spec.execution.traces import Trace
 from carp_spec.requests import require_trace, sound_solution
+from carp_spec.rule import is_between
 from carp_verify.bound.rules import ContradictionError
 from carp_verify.release.holding import State, Ways, places_of
 from carp_verify.release.rules import Grant, answer_is_shown, grants_are_next, there_is_room
 from carp_verify.release.verify import Finish, Overfull, Stuck, Witness
 from carproof.execution.release_search import Budget, CutOffError, Search, all_places
+from carproof.requests import POSITIVE_LIMIT, deadline
 
 Answer: TypeAlias = Literal["safe", "unsafe", "undecided"]
 MOST_STATES = 20_000
 SHARE = 3
 """A search has one of this many parts of the time; to check its witness and to write it take no more than it does."""
+
+
+def limit_of(states: int | None, seconds: float | None) -> tuple[float, float]:
+    """The states of each search, and when all must have ended, if they begin now; raises `Refusal` for wrong ones."""
+    if states is not None and not is_between(states, 1):
+        message = f"it must be a whole number of at least 1, not {states!r}"
+        raise Refusal("option", "$.states", POSITIVE_LIMIT.id, message)
+    return states or (MOST_STATES if seconds is None else inf), deadline(seconds)
 
 
 def end_of_part(until: float, parts: int) -> float:
@@ -95,7 +105,10 @@ class Leaving:
 
 
 class Releasing:
-    """The situation of a trace: where robots are, and what the planned order grants them."""
+    """The situation of a trace: where robots are, and what the planned order grants them.
+
+    Raises `Refusal`, of the kind `request` for the solution, and else for the trace.
+    """
 
     def __init__(self, instance: Instance, solution: Solution, trace: Trace) -> None:
         require_trace(instance, solution, trace)

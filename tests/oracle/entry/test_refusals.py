@@ -75,7 +75,10 @@ REFUSED = (
     ("optimum town.json --limit 0", "--limit"),
     ("gap town.json --limit x", "--limit"),
     (f"optimum town.json --limit 1{'0' * 400}", "Error: --limit: it must be a number of at least 0, not 1000"),
-    (f"bound town.json --seconds 1{'0' * 400} --steps 0", "Error: --seconds: it must be a number of at least 0, not 1000"),
+    (
+        f"bound town.json --seconds 1{'0' * 400} --steps 0",
+        "Error: --seconds: it must be a number of at least 0, not 1000",
+    ),
     (f"bound town.json --steps 1{'0' * 400}", "Error: --steps: it must be a whole number of at least 0, not 1000"),
     # files
     ("plan comma.json", "comma.json: $: ", "line 2, column 9", "[document/json]"),

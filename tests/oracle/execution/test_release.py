@@ -10,7 +10,7 @@ from time import process_time
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.oracle.running import Run
+from tests.oracle.running import TWO, TWO_PLANNED, UNDER_WAY, Document, Run, asked, save, solution, town
 
 from carp_spec import Carp, Instance, Plan, Refusal, Resource, ResourceGraph, Robot, RobotId, Solution, Visit
 from carp_spec.execution.execution_rules import is_acyclic
@@ -274,6 +274,42 @@ def test_plans_with_a_rotation_ahead_are_refused() -> None:
     trace = Trace(0, tuple(Plan(each.id, (Visit(each.start, 0, None),)) for each in robots))
     with pytest.raises(Refusal, match="execution/acyclic"):
         release(turning, Solution.of(turning, plans), trace)
+
+
+NO_GRANTS: Document = {"format": "carproof-grants/1", "grants": []}
+PARTLY = {**UNDER_WAY, "plans": UNDER_WAY["plans"][:1]}
+"""A trace that leaves a robot out."""
+TURNING = town("ab bc ca", [{"id": f"r{a}", "start": a, "goal": b} for a, b in ("ab", "bc", "ca")])
+TURN = solution({f"r{a}": [[a, 0, 1], [b, 1, 2]] for a, b in ("ab", "bc", "ca")})
+STILL = {**UNDER_WAY, "now": 0, "plans": [{"robot": f"r{a}", "visits": [[a, 0, None]]} for a in "abc"]}
+
+
+@pytest.mark.parametrize(
+    ("documents", "blamed", "rule"),
+    [
+        ({"instance": TWO, "solution": TWO_PLANNED, "trace": PARTLY}, "trace: $.plans", "trace/robots"),
+        ({"instance": TURNING, "solution": TURN, "trace": STILL}, "solution: $", "execution/acyclic"),
+    ],
+)
+@pytest.mark.usefixtures("elsewhere")
+def test_the_document_that_is_wrong_is_named(
+    carproof: Run, documents: dict[str, Document], blamed: str, rule: str
+) -> None:
+    save(**documents, grants=NO_GRANTS)
+    name, _, place = blamed.partition(": $")
+    for option in ("", "--grants grants.json"):
+        outcome = carproof(f"release instance.json solution.json trace.json {option}")
+        assert outcome.code == 2
+        assert outcome.stderr.startswith(f"Error: {name}.json: ${place}: ")
+    for error in (asked("release", **documents)["error"], asked("check-grants", **documents, grants=[])["error"]):
+        assert (error["path"], error["rule"]) == (f"$.{name}{place}", rule)
+
+
+def test_a_robot_that_is_unknown_is_the_fault_of_the_question() -> None:
+    documents = {"instance": TWO, "solution": TWO_PLANNED, "trace": UNDER_WAY}
+    assert asked("release", **documents, beyond=["r9"])["error"]["path"] == "$.beyond"
+    unknown = [{"robot": "r9", "resources": []}]
+    assert asked("check-grants", **documents, grants=unknown)["error"]["path"] == "$.grants[0].robot"
 
 
 def test_exit_codes(carproof: Run, elsewhere: Path) -> None:

@@ -2,10 +2,9 @@
 
 import click
 
+from carp_spec import Refusal
 from carp_spec.documents.decoding import write
 from carp_spec.documents.solutions import read_trace
-from carproof.api.executing import check_grants
-from carproof.api.executing import release as released_of
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, Output, naming, read_file, read_sound
 from carproof.command_line.options import instance_argument, listed, output_options, solution_argument, trace_argument
@@ -18,7 +17,7 @@ from carproof.execution.release_documents import (
     read_grants,
     released_document,
 )
-from carproof.execution.releasing import MOST_STATES
+from carproof.execution.releasing import MOST_STATES, Releasing, limit_of
 
 MOST_SHOWN = 8
 """The resources of a grant that are printed."""
@@ -73,18 +72,21 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         raise click.UsageError("--beyond lists grants, and --grants asks about some: give one of them.")
     problem, sound = read_sound(instance, solution)
     done = read_file(trace, read_trace)
+    limit = limit_of(states, time_left(context, seconds))
+    try:
+        situation = Releasing(problem, sound, done)
+    except Refusal as refusal:
+        with naming(solution if refusal.kind == "request" else trace):
+            raise
     if grants is not None:
         wanted = read_file(grants, read_grants)
         with naming(grants):
-            verdict = grants_verdict_document(
-                problem, check_grants(problem, sound, done, wanted, states, time_left(context, seconds))
-            )
+            verdict = grants_verdict_document(problem, situation.check(wanted, *limit))
         if output.write(write(verdict)):
             print_line(_sentence(verdict, states, seconds))
         return ANSWERS[verdict.answer]
     robots = [plan.robot for plan in sound.plans] if beyond else []
-    with naming(trace):
-        document = released_document(released_of(problem, sound, done, robots, states, time_left(context, seconds)))
+    document = released_document(situation.released(robots, *limit))
     if output.write(write(document)):
         _show(document)
     is_decided = all(each.answer != "undecided" for each in document.beyond)

@@ -6,7 +6,7 @@ from typing import TypeAlias
 import msgspec
 
 from carp_reference.execution import order_of
-from carp_spec import Instance, ResourceId, RobotId, Solution, Visit
+from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution, Visit
 from carp_spec.documents.grants import GrantDocument
 from carp_spec.documents.solutions import SolutionDocument, TraceDocument, solution_document, trace_document
 from carp_spec.documents.verdicts import VerdictDocument, verdict_document
@@ -14,8 +14,6 @@ from carp_spec.execution.execution_rules import require_followed
 from carp_spec.execution.traces import Trace
 from carp_spec.requests import require_robot, require_tick
 from carp_verify.release.rules import Grant
-from carproof.api.executing import check_grants as grants_checked
-from carproof.api.executing import release as released
 from carproof.api.judging import check_trace as trace_checked
 from carproof.engines import Engine
 from carproof.execution.delays import Delay, late_robots, may_enter, until
@@ -26,10 +24,11 @@ from carproof.execution.release_documents import (
     grants_verdict_document,
     released_document,
 )
+from carproof.execution.releasing import Releasing, limit_of
 from carproof.execution.simulation import DependenciesDocument, Driver, dependencies_document, require_delays
 from carproof.execution.simulation import execute as executed
 from carproof.execution.untangling import untangle as untangled
-from carproof.requests import deadline, inside, sound_within
+from carproof.requests import below, deadline, inside, sound_within
 
 DelayFields: TypeAlias = tuple[RobotId, int, int]
 """A robot, the position of a visit, and ticks."""
@@ -189,10 +188,12 @@ def release(
 
     For the robots of `beyond`, grants beyond the planned order are searched.
     """
-    sound = sound_within(instance, solution)
-    with inside("$.trace"):
-        found = released(instance, sound, trace, beyond, states, seconds)
-    return released_document(found)
+    limit = limit_of(states, seconds)
+    situation = _situation(instance, solution, trace)
+    for robot in beyond:
+        require_robot(instance, robot, "$.beyond")
+    planned = [robot for robot in beyond if robot in situation.plans]
+    return released_document(situation.released(planned, *limit))
 
 
 def check_grants(
@@ -204,10 +205,18 @@ def check_grants(
     seconds: float | None = None,
 ) -> GrantsVerdictDocument:
     """Decide whether everybody can still finish if robots are granted these resources, and show why."""
-    sound = sound_within(instance, solution)
+    limit = limit_of(states, seconds)
     wanted = [Grant(each.robot, each.resources) for each in grants]
-    verdict = grants_checked(instance, sound, trace, wanted, states, seconds)
+    verdict = _situation(instance, solution, trace).check(wanted, *limit)
     return grants_verdict_document(instance, verdict)
+
+
+def _situation(instance: Instance, solution: Solution, trace: Trace) -> Releasing:
+    sound = sound_within(instance, solution)
+    try:
+        return Releasing(instance, sound, trace)
+    except Refusal as refusal:
+        raise below("$.solution" if refusal.kind == "request" else "$.trace", refusal) from refusal
 
 
 def _delays(solution: Solution, delays: tuple[DelayFields, ...]) -> tuple[Delay, ...]:
