@@ -3,6 +3,7 @@
 Refusals name paths in the wrong document: `$.plans[2].visits[0]`.
 """
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from math import inf
@@ -81,6 +82,25 @@ def below(prefix: str, refusal: Refusal) -> Refusal:
         return refusal
     path = prefix + refusal.path.removeprefix("$")
     return Refusal(refusal.kind, path, refusal.rule, refusal.message)
+
+
+def document_of(refusal: Refusal) -> str | None:
+    """The document that a planner refuses; `None` if it is a field of the request beside the documents."""
+    part = re.match(r"\$\.(graph|robots|plans)\b", refusal.path)
+    return None if part is None else "solution" if part[1] == "plans" else "instance"
+
+
+@contextmanager
+def inside_documents() -> Iterator[None]:
+    """Put the paths of a planner's refusals below the instance or the solution of the request, where they are of one.
+
+    `$.graph` becomes `$.instance.graph`, and `$.now` stays.
+    """
+    try:
+        yield
+    except Refusal as refusal:
+        document = document_of(refusal)
+        raise below("$" if document is None else f"$.{document}", refusal) from refusal
 
 
 def sound_within(instance: Instance, solution: Solution, asked: RobotId | None = None) -> Solution:

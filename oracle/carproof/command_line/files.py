@@ -16,6 +16,7 @@ from carp_spec.documents.instances import read_instance
 from carp_spec.documents.solutions import read_solution
 from carp_spec.requests import sound_solution
 from carproof.formats.layouts import layout_named
+from carproof.requests import document_of
 
 T = TypeVar("T")
 FileName: TypeAlias = str | os.PathLike[str]
@@ -132,6 +133,19 @@ def naming(name: str) -> Iterator[None]:
         if refusal.kind == "option":
             raise
         raise click.ClickException(f"{shown(name)}: {refusal}") from refusal
+
+
+@contextmanager
+def naming_documents(instance: str, solution: str) -> Iterator[None]:
+    """Put the file's name before a planner's refusal of an instance or a solution, but not before one of an option."""
+    try:
+        yield
+    except Refusal as refusal:
+        document = document_of(refusal)
+        if document is None:
+            raise
+        with naming(instance if document == "instance" else solution):
+            raise
 
 
 def shown(name: str) -> str:

@@ -1,6 +1,7 @@
 """The options of commands that read and write other planners' files, and the reading of these files."""
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Any, TypeVar, cast
 import click
 
 from carp_spec import AfterGoal, Instance, Solution
-from carproof.command_line.files import InputFile, read_bytes, read_instance_file, shown
+from carproof.command_line.files import InputFile, naming_documents, read_bytes, read_instance_file, shown
 from carproof.command_line.options import gathered
 from carproof.formats import ADAPTERS, format_of, named_as, read_foreign_solution
 from carproof.formats.movingai import movingai_instance, read_map, read_scenario
@@ -91,6 +92,10 @@ class Problem:
         first = self.instance or (self.benchmark.scen if self.benchmark else "")
         names = [first] if self.solution is None else [first, self.solution]
         return " · ".join(Path(shown(name)).name for name in names)
+
+    def naming(self) -> AbstractContextManager[None]:
+        """Name the file that a planner refuses."""
+        return naming_documents(self.name, self.solution or "")
 
     def read_instance(self) -> Instance:
         """Read the instance or the benchmark."""

@@ -1,6 +1,7 @@
 """Arguments and options that several commands share."""
 
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, fields
 from functools import wraps
 from typing import Any, TypeVar, cast
@@ -17,6 +18,7 @@ from carproof.command_line.files import (
     Output,
     OutputFile,
     naming,
+    naming_documents,
     read_instance_file,
     read_solution_file,
 )
@@ -141,6 +143,10 @@ class Asked:
         id = robot_called(problem, self.robot)
         with naming(self.solution):
             return problem, sound_solution(problem, given, id if for_query else None), id
+
+    def naming(self) -> AbstractContextManager[None]:
+        """Name the file that a planner refuses."""
+        return naming_documents(self.instance, self.solution)
 
 
 asks_for_a_robot = gathered("asked", Asked, instance_argument, solution_argument, click.argument("robot"), now_option)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from tests.oracle.formats.foreign_files import INSTANCE, LACAM, MAP, SCENARIO
-from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Run, corridor, save
+from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Run, corridor, save, solution
 
 from carproof import write_instance
 
@@ -14,6 +14,7 @@ TRACE = {"format": "carproof-trace/1", "now": 3, "plans": [{"robot": "r1", "visi
 BOUND = {"format": "carproof-bound/1", "instance": "", "bound": 5, "scale": 1, "horizon": 0} | {
     name: [] for name in ("resources", "exchanges", "cuts", "robots")
 }
+SLOW_END = {**TWO["graph"], "nodes": [*TWO["graph"]["nodes"][:4], {"id": "e", "duration": 2**62}]}
 DOCUMENTS: dict[str, object] = {
     "verdict": EMPTY_VERDICT,
     "nothing": {},
@@ -25,6 +26,11 @@ DOCUMENTS: dict[str, object] = {
     "numbered": corridor([{**EAST, "id": 7}, {**BEHIND, "id": "7"}]),
     "none": {**TWO_PLANNED, "plans": [], "order": [], "unplanned": ["r1", "r2"]},
     "slow": {**TWO, "graph": {**TWO["graph"], "nodes": [{"id": "a", "duration": 2**40}, *TWO["graph"]["nodes"][1:]]}},
+    "slow-e": {**corridor([EAST]), "graph": SLOW_END},
+    "trace": TRACE,
+    "park": corridor([EAST], "park"),
+    "park-plans": solution({"r1": [["a", 0, 1], ["b", 1, 2], ["c", 2, None]]}),
+    "long-plans": solution({"r1": [["a", 0, 2**40], ["b", 2**40, 2**41], ["c", 2**41, None]]}),
     "late": corridor([{**EAST, "release": 2**70}]),
     "unordered": {**TWO_PLANNED, "order": ["r1"]},
     "far": {**TWO_PLANNED, "plans": [{"robot": "r1", "visits": [["a", 0, 10**9]]}], "order": ["r1"]},
@@ -38,6 +44,16 @@ DOCUMENTS: dict[str, object] = {
     "route": [["b", 0, 1], ["c", 1, 2]],
 }
 SLOW = "$.graph.nodes[0].duration: "
+SLOW_E = "$.graph.nodes[4].duration: the duration must be at most "
+NOW = (
+    "query town.json one.json r2",
+    "query town.json one.json r2 --certificate out",
+    "add town.json none.json r2",
+    "polish town.json plans.json",
+    "assign park.json park-plans.json r1 b",
+    "execution give-way town.json plans.json r1",
+)
+"""Commands that ask at a tick."""
 CAPACITY = "$.plans[0].visits[1]: resource b in [1,2): robots r1, r2 (capacity 1) [joint/capacity]"
 MAPS = "--map m.map --scen m.scen"
 LAYOUTS = {
@@ -157,6 +173,14 @@ REFUSED = (
         "execution simulate east.json east-plans.json --driver order --trace t.json --now -1",
         "--now: it must be a whole",
     ),
+    # numbers that the compiled planner does not hold
+    ("assign slow-e.json east-plans.json r1 b", f"Error: slow-e.json: {SLOW_E}"),
+    ("audit slow-e.json east-plans.json", f"Error: slow-e.json: {SLOW_E}"),
+    ("execution give-way slow-e.json east-plans.json r1", f"Error: slow-e.json: {SLOW_E}"),
+    ("execution retime slow-e.json east-plans.json trace.json", f"Error: slow-e.json: {SLOW_E}"),
+    ("execution retime park.json long-plans.json trace.json", "Error: long-plans.json: $.plans: the tick"),
+    ("polish park.json long-plans.json", "Error: long-plans.json: $.plans[0].visits[0]: the tick"),
+    *((f"{command} --now {2**40}", "Error: --now: the tick must be at most ") for command in NOW),
     # bounds and proofs
     ("audit town.json unordered.json", "[solution/order]"),
     ("bound town.json --plans east-plans.json", "plans to compare with must break no rule"),
@@ -178,6 +202,7 @@ REFUSED = (
     ("generate grid --duration 1..x", "must be a whole number or LOW..HIGH"),
     ("generate grid --after-goal stay", "'stay' is not one of 'vanish', 'park'"),
     ("generate warehouse --aisle 0", "--aisle: it must be between 1"),
+    ("generate warehouse --headings --orders pick-and-drop", "Error: --headings: robots must have goals alone"),
     ("view town.json plans.json --at 1 --chart", "Only one of --at and --chart can be drawn."),
     ("view town.json far.json", "and there is 1000000000 [view/ticks]"),
     ("view town.json broken.json --at 900", "from tick 0 to tick 5"),
@@ -196,6 +221,11 @@ REFUSED = (
         "convert town.json plans.json",
         "town.json is no map; to convert a solution of an instance, name a format by --to.",
     ),
+    (
+        "convert town.json plans.json --to vda5050-3 --since 3 --at 2",
+        "Error: --since: it must be a tick of at least 0, ",
+    ),
+    ("convert town.json plans.json --to vda5050-3 --at 999999999999", "Error: --at: it must be a tick of at least 0, "),
     ("convert m.map m.scen --agents 3", "m.scen:3: 3 agents are asked for, and the scenario has 2"),
     ("convert - m.scen", "Error: standard input:1: "),
     # programs

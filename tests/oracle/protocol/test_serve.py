@@ -183,17 +183,42 @@ def test_random_fields_never_fail_by_a_fault_of_ours(op: str, fields: dict[str, 
     assert response.get("error", {}).get("kind") != "internal"
 
 
-def test_a_refusal_of_the_engine_has_its_place_in_the_request() -> None:
-    large = corridor(TWO["robots"])
-    large["graph"]["nodes"][1]["duration"] = 2**40
-    for request in (
-        line(id=1, op="plan", instance=large),
-        line(id=1, op="query", instance=large, solution=solution({}), robot="r1"),
-        line(id=1, op="add", instance=large, solution=solution({}), robot="r1"),
-    ):
-        response, _ = respond(request, Session(engine_named("optimized")))
-        reported = json.loads(msgspec.json.encode(response))["error"]
-        assert (reported["kind"], reported["path"]) == ("limit", "$.instance.graph.nodes[1].duration")
+SLOW_END = {**TWO["graph"], "nodes": [*TWO["graph"]["nodes"][:4], {"id": "e", "duration": 2**40}]}
+ALONE = {"instance": corridor([EAST]), "solution": ONE_PLANNED}
+LARGE = {"instance": {**ALONE["instance"], "graph": SLOW_END}, "solution": ONE_PLANNED}
+LONG = {
+    "instance": corridor([EAST], "park"),
+    "solution": solution({"r1": [["a", 0, 2**40], ["b", 2**40, 2**41], ["c", 2**41, None]]}),
+}
+BEGUN = {**UNDER_WAY, "now": 0, "plans": UNDER_WAY["plans"][:1]}
+
+
+@pytest.mark.parametrize(
+    ("op", "fields", "path"),
+    [
+        ("plan", {"instance": LARGE["instance"]}, "$.instance.graph.nodes[4].duration"),
+        ("query", {**LARGE, "robot": "r1"}, "$.instance.graph.nodes[4].duration"),
+        ("add", {**LARGE, "solution": solution({}), "robot": "r1"}, "$.instance.graph.nodes[4].duration"),
+        ("polish", {**LARGE, "iterations": 1}, "$.instance.graph.nodes[4].duration"),
+        ("assign", {**LARGE, "robot": "r1", "stops": [{"resource": "b"}]}, "$.instance.graph.nodes[4].duration"),
+        ("audit", LARGE, "$.instance.graph.nodes[4].duration"),
+        ("give-way", {**LARGE, "robot": "r1"}, "$.instance.graph.nodes[4].duration"),
+        ("retime", {**LARGE, "trace": BEGUN}, "$.instance.graph.nodes[4].duration"),
+        ("fleet/open", {**LARGE, "fleet": "f"}, "$.instance.graph.nodes[4].duration"),
+        ("query", {**ALONE, "robot": "r1", "now": 2**40}, "$.now"),
+        ("add", {**ALONE, "solution": solution({}), "robot": "r1", "now": 2**40}, "$.now"),
+        ("polish", {**ALONE, "iterations": 1, "now": 2**40}, "$.now"),
+        ("give-way", {**ALONE, "robot": "r1", "now": 2**40}, "$.now"),
+        ("retime", {**ALONE, "trace": {**BEGUN, "now": 2**40}}, "$.trace.now"),
+        ("polish", {**LONG, "iterations": 1}, "$.solution.plans[0].visits[0]"),
+        ("audit", LONG, "$.solution.plans[0].visits[0]"),
+        ("retime", {**LONG, "trace": BEGUN}, "$.solution.plans"),
+    ],
+)
+def test_a_refusal_of_the_engine_has_its_place_in_the_request(op: str, fields: dict[str, object], path: str) -> None:
+    response, _ = respond(line(id=1, op=op, **fields), Session(engine_named("optimized")))
+    reported = json.loads(msgspec.json.encode(response))["error"]
+    assert (reported["kind"], reported["path"]) == ("limit", path)
 
 
 class Faulty:

@@ -32,7 +32,8 @@ def command(*, asked: Asked, route: str | None, engine: str | None, output: Outp
     """
     problem, sound, id = asked.read()
     visits = None if route is None else _read_route(route)
-    found = give_way(problem, sound, id, asked.now, engine_named(engine), visits)
+    with asked.naming():
+        found = give_way(problem, sound, id, asked.now, engine_named(engine), visits)
     for each in found.stuck:
         remark(f"Robot {each} finds no plan around the earliest one of robot {id}.")
     if found.solution is None:

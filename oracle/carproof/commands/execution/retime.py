@@ -1,12 +1,13 @@
 """`carproof execution retime`: plans for the rest of the way, after delays."""
 
-from carp_spec import total_cost
+from carp_spec import Refusal, total_cost
 from carp_spec.documents.solutions import read_trace, write_solution
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, naming, read_file, read_sound
 from carproof.command_line.options import gives_plans, instance_argument, listed, solution_argument, trace_argument
 from carproof.command_line.tables import counted, print_line
 from carproof.engines import engine_named
+from carproof.requests import document_of
 
 
 @listed(
@@ -28,8 +29,12 @@ def command(*, instance: str, solution: str, trace: str, engine: str | None, out
     """
     problem, sound = read_sound(instance, solution)
     done = read_file(trace, read_trace)
-    with naming(trace):
+    try:
         after = engine_named(engine).retime(problem, sound, done)
+    except Refusal as refusal:
+        too_large = document_of(refusal) if refusal.kind == "limit" else None
+        with naming({"instance": instance, "solution": solution}.get(too_large or "", trace)):
+            raise
     if output.write(write_solution(after)):
         arrivals = {plan.robot: plan.visits[-1].enter for plan in sound.plans}
         print_line(f"total cost {total_cost(problem, sound.plans)} before, {total_cost(problem, after.plans)} now")

@@ -7,7 +7,7 @@ import click
 from carp_spec import total_cost
 from carp_spec.documents.solutions import write_solution
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import Output, read_sound
+from carproof.command_line.files import Output, naming_documents, read_sound
 from carproof.command_line.options import gives_plans, instance_argument, listed, solution_argument
 from carproof.command_line.tables import print_table, remark
 from carproof.command_line.time_left import time_left
@@ -42,7 +42,8 @@ def command(
     problem, sound = read_sound(instance, solution)
     chosen = engine_named(engine)
     until = deadline(time_left(context, seconds))
-    found = untangle(problem, sound, chosen, lambda: perf_counter() < until)
+    with naming_documents(instance, solution):
+        found = untangle(problem, sound, chosen, lambda: perf_counter() < until)
     if found.rotation and not found.undecided:
         names = ", ".join(map(str, found.rotation))
         remark(f"Out of the rotation of the robots {names} none finds another plan.")

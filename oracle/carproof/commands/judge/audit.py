@@ -68,7 +68,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     look = audit_in_some_order if find_order or format != OWN_FORMAT else audit_in_order
     certifying = engine_named(engine or "optimized")  # compiled before the clock starts
     started = perf_counter()
-    with progress("auditing", len(sound.plans)) as advance:
+    with problem.naming(), progress("auditing", len(sound.plans)) as advance:
         audit = look(instance, sound, certifying, advance, lambda: perf_counter() < until)
     if kernel:
         ask_kernel(instance, audit)

@@ -4,7 +4,7 @@ from carp_spec import Neighbourhood
 from carp_spec.documents.solutions import write_solution
 from carp_spec.requests import require_new_robot
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import Output, naming
+from carproof.command_line.files import Output
 from carproof.command_line.options import Asked, asks_for_a_robot, gives_plans, listed, neighbourhood_options
 from carproof.command_line.output import show_addition
 from carproof.engines import engine_named
@@ -30,7 +30,7 @@ def command(*, asked: Asked, planner: Neighbourhood, engine: str | None, output:
     """
     problem, before, id = asked.read()
     require_new_robot(problem, before, id, "ROBOT")
-    with naming(asked.instance):
+    with asked.naming():
         after = engine_named(engine).add(problem, before, id, asked.now, planner)
     if output.write(write_solution(after)):
         show_addition(problem, before, after, id, asked.now)

@@ -45,7 +45,8 @@ def command(
     """
     problem, before, id = asked.read()
     wanted = [stop_called(problem, each) for each in stops]
-    assigned, after = engine_named(engine).assign(problem, before, id, wanted, asked.now, planner)
+    with asked.naming():
+        assigned, after = engine_named(engine).assign(problem, before, id, wanted, asked.now, planner)
     if further is not None:
         write_whole(further, write_instance(assigned))
     if output.write(write_solution(after)):

@@ -78,7 +78,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     played = 0
     compiling = 0.0 if seconds is None else time_of_compiling()
     started = perf_counter()
-    with naming(problem.name), search_progress("polishing", last_round(iterations, seconds), seconds) as show:
+    with problem.naming(), search_progress("polishing", last_round(iterations, seconds), seconds) as show:
 
         def advance(rounds: int, unplanned: int, total: int) -> None:
             nonlocal played

@@ -7,7 +7,7 @@ import click
 from carp_spec import plan_cost
 from carp_spec.documents.decoding import write
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import Output, OutputFile, naming, write_whole
+from carproof.command_line.files import Output, OutputFile, write_whole
 from carproof.command_line.options import Asked, asks_for_a_robot, gives_plans, listed
 from carproof.command_line.tables import print_line, print_table
 from carproof.engines import engine_named
@@ -36,7 +36,7 @@ def command(*, asked: Asked, certificate: Path | None, engine: str | None, outpu
     now = asked.now
     others = [each for each in committed.plans if each.robot != id]
     followed = next((each for each in committed.plans if each.robot == id), None)
-    with naming(asked.instance):
+    with asked.naming():
         if certificate is None:
             plan = engine_named(engine).query(problem, committed.plans, id, now)
         else:

@@ -6,6 +6,7 @@ from typing import Any, TypeVar, get_args
 
 import click
 
+from carp_spec import Instance, Refusal
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output
 from carproof.command_line.options import RangeType, examples, gathered, output_options
@@ -98,8 +99,7 @@ def grid(grid: Grid, fleet: Fleet, traits: Traits, headings: bool, output: Outpu
     Map 0 is a random minimum spanning tree of the grid; map i has i twentieths of the other edges too. The
     maps of one seed are nested. Robots start and end anywhere.
     """
-    instance = grid_instance(grid, fleet, traits)
-    return show_instance(with_headings(instance) if headings else instance, output)
+    return _show(grid_instance(grid, fleet, traits), headings, output)
 
 
 @command.command(
@@ -120,5 +120,11 @@ def warehouse(warehouse: Warehouse, fleet: Fleet, traits: Traits, headings: bool
 
     Robots go from cells beside the racks to the stations, or the other way.
     """
-    instance = warehouse_instance(warehouse, fleet, traits)
-    return show_instance(with_headings(instance) if headings else instance, output)
+    return _show(warehouse_instance(warehouse, fleet, traits), headings, output)
+
+
+def _show(instance: Instance, headings: bool, output: Output) -> Answer:
+    try:
+        return show_instance(with_headings(instance) if headings else instance, output)
+    except Refusal as refusal:
+        raise Refusal("option", "$.headings", refusal.rule, refusal.message) from refusal

@@ -8,7 +8,7 @@ a service is an action of its node. The format has no times, so that waiting is 
 import json
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime, timedelta
 from fractions import Fraction
 from hashlib import sha256
@@ -17,7 +17,7 @@ from typing import Any, cast
 from carp_spec import Instance, Plan, Refusal, RobotId, Solution
 from carp_spec.execution.dependencies import dependencies
 from carp_spec.inputs.values import require_solution
-from carp_spec.rule import DESIGN, is_between, rule
+from carp_spec.rule import DESIGN, Found, fault_rule, is_between
 from carproof.formats.plans.checks import ids_by_text, require_lawful
 from carproof.formats.plans.services import stops_in
 from carproof.input_rules import Code
@@ -46,25 +46,28 @@ class OrderSettings:
     manufacturer: str = "carproof"
 
 
-@rule(
+@fault_rule(
     "order/settings",
     "An order is sent at a tick of at least 0, before the year 10,000. An update is sent after the order before it. "
     f"The version is one of {', '.join(VERSIONS.values())}; a tick and the unit of positions are above 0.",
     DESIGN,
 )
-def settings_are_right(settings: OrderSettings) -> bool:
-    """Whether orders can be written with the settings."""
-    quantities: tuple[object, ...] = (settings.tick, settings.unit)
-    texts: tuple[object, ...] = (settings.map_id, settings.manufacturer)
-    return (
-        is_between(settings.at, 0)
-        and (settings.since is None or is_between(settings.since, 0))
-        and (settings.since is None or settings.since < settings.at)
-        and settings.version in VERSIONS.values()
-        and all(isinstance(each, Fraction) and each > 0 for each in quantities)
-        and settings.at * settings.tick < SECONDS_OF_DATES
-        and all(isinstance(each, str) for each in texts)
-    )
+def settings_are_right(settings: OrderSettings) -> Found:
+    """Look at each of the settings."""
+    given: dict[str, Any] = asdict(settings)
+    for name in ("tick", "unit"):
+        if not (isinstance(given[name], Fraction) and given[name] > 0):
+            yield f"$.{name}", f"it must be a fraction above 0, not {given[name]!r}"
+            return
+    if not (is_between(settings.at, 0) and settings.at * settings.tick < SECONDS_OF_DATES):
+        yield "$.at", f"it must be a tick of at least 0, before the year 10,000, not {settings.at!r}"
+    elif settings.since is not None and not is_between(settings.since, 0, settings.at - 1):
+        yield "$.since", f"it must be a tick of at least 0, before {settings.at}, not {settings.since!r}"
+    if settings.version not in VERSIONS.values():
+        yield "$.version", f"it must be one of {', '.join(VERSIONS.values())}, not {settings.version!r}"
+    for name in ("map_id", "manufacturer"):
+        if not isinstance(given[name], str):
+            yield f"$.{name}", f"it must be text, not {given[name]!r}"
 
 
 RIGHT_NAMES = Code(
@@ -82,12 +85,10 @@ def write_orders(instance: Instance, solution: Solution, settings: OrderSettings
     then. Raises `Refusal` if the solution is malformed or breaks a rule.
     """
     require_solution(instance, solution)
-    if not (isinstance(cast("object", settings), OrderSettings) and settings_are_right(settings)):
-        message = (
-            "at must be at least 0 and before the year 10,000, since less than at, the tick and the unit above 0, and "
-            "the version a known one"
-        )
-        raise Refusal("option", "$.orders", settings_are_right.id, message)
+    if not isinstance(cast("object", settings), OrderSettings):
+        raise Refusal("option", "$.orders", settings_are_right.id, f"they must be OrderSettings, not {settings!r}")
+    for fault in settings_are_right(settings):
+        raise Refusal("option", fault.path, fault.rule, fault.message)
     require_lawful(instance, solution)
     now = released(instance, solution, settings.at)
     then = {} if settings.since is None else released(instance, solution, settings.since)

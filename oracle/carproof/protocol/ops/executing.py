@@ -28,7 +28,7 @@ from carproof.execution.releasing import Releasing, limit_of
 from carproof.execution.simulation import DependenciesDocument, Driver, dependencies_document, require_delays
 from carproof.execution.simulation import execute as executed
 from carproof.execution.untangling import untangle as untangled
-from carproof.requests import below, deadline, inside, sound_within
+from carproof.requests import below, deadline, document_of, inside, inside_documents, sound_within
 
 DelayFields: TypeAlias = tuple[RobotId, int, int]
 """A robot, the position of a visit, and ticks."""
@@ -88,8 +88,11 @@ def retime(instance: Instance, solution: Solution, trace: Trace, *, engine: Engi
     Where robots are at the tick of the trace is told: other ops keep it with a `now` of at least the next tick.
     """
     sound = sound_within(instance, solution)
-    with inside("$.trace"):
+    try:
         return engine.retime(instance, sound, trace)
+    except Refusal as refusal:
+        too_large = document_of(refusal) if refusal.kind == "limit" else None
+        raise below(f"$.{too_large or 'trace'}", refusal) from refusal
 
 
 class UntangledDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -111,7 +114,7 @@ def untangle(
     """Replan robots until no robots enter each other's places in a circle, or the `seconds` are over."""
     ends = deadline(seconds)
     sound = sound_within(instance, solution)
-    with inside("$.instance"):
+    with inside_documents():
         found = untangled(instance, sound, engine, lambda: perf_counter() < ends)
     return UntangledDocument(solution_document(found.solution), found.extra, found.rotation, found.undecided)
 
@@ -147,7 +150,8 @@ def give_way(
     require_robot(instance, robot, "$.robot")
     sound = sound_within(instance, solution)
     visits = None if route is None else tuple(Visit(*visit) for visit in route)
-    found = given_way(instance, sound, robot, now, engine, visits)
+    with inside_documents():
+        found = given_way(instance, sound, robot, now, engine, visits)
     return GivenWayDocument(
         None if found.solution is None else solution_document(found.solution),
         found.arrival,

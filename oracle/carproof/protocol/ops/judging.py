@@ -14,7 +14,7 @@ from carproof.judging.verdicts import verify_bound as bound_verdict
 from carproof.judging.verdicts import verify_query as query_verdict
 from carproof.layouts.settings import footprint as footprint_of
 from carproof.layouts.settings import step_of_cells
-from carproof.requests import deadline, inside, sound_within
+from carproof.requests import deadline, inside, inside_documents, sound_within
 
 
 def check(
@@ -49,7 +49,7 @@ def audit(
     """
     until = deadline(seconds)
     sound = sound_within(instance, solution)
-    with inside("$.instance"):
+    with inside_documents():
         found = audit_in_order(instance, sound, engine, goes_on=lambda: perf_counter() < until)
     if kernel:
         ask_kernel(instance, found)

@@ -19,7 +19,7 @@ from carproof.api.fleet_rules import FEW_ROBOTS, NOT_BACK, OWN_ROBOTS
 from carproof.input_rules import Code
 from carproof.judging.documents import AuditDocument, audit_document
 from carproof.protocol.ops.op import PolishOptions, Session
-from carproof.requests import inside, sound_within
+from carproof.requests import inside, inside_documents, sound_within
 
 MOST_FLEETS = 8
 LONGEST_NAME = 100
@@ -62,7 +62,7 @@ def fleet_open(  # noqa: PLR0913 - one parameter for each field
     require_tick(now)
     _require_room(fleet, instance, session)
     sound = None if solution is None else sound_within(instance, solution)
-    with inside("$.instance"):
+    with inside_documents():
         opened = Fleet(instance, sound, now, options, audit=audit)
     session.fleets[fleet] = opened
     gc.freeze()  # its many plans need not be looked through for garbage again and again

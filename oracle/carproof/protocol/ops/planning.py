@@ -13,7 +13,7 @@ from carp_spec.requests import require_new_robot, require_robot, require_tick
 from carproof.api import planning
 from carproof.engines import Engine, repaired, warm
 from carproof.protocol.ops.op import PolishOptions
-from carproof.requests import inside, sound_within
+from carproof.requests import inside, inside_documents, sound_within
 
 
 class QueryDocument(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -40,7 +40,7 @@ def query(instance: Instance, solution: Solution, robot: RobotId, now: int = 0, 
     require_tick(now, "$.now")
     require_robot(instance, robot, "$.robot")
     committed = sound_within(instance, solution, robot)
-    with inside("$.instance"):
+    with inside_documents():
         return query_document(engine.query(instance, committed.plans, robot, now))
 
 
@@ -74,7 +74,7 @@ def add(
     require_tick(now, "$.now")
     require_new_robot(instance, solution, robot, "$.robot")
     before = sound_within(instance, solution)
-    with inside("$.instance"):
+    with inside_documents():
         return engine.add(instance, before, robot, now, options)
 
 
@@ -98,7 +98,8 @@ def assign(  # noqa: PLR0913 - one parameter for each field
     """Give a robot that is under way or parked further stops; it and robots near it are planned again from `now` on."""
     before = sound_within(instance, solution)
     wanted = all_converted(stops, Stop)
-    further, after = engine.assign(instance, before, robot, wanted, now, options)
+    with inside_documents():
+        further, after = engine.assign(instance, before, robot, wanted, now, options)
     found = None if further is instance else instance_document(further)
     return AssignDocument(found, solution_document(after))
 
@@ -109,5 +110,5 @@ def polish(instance: Instance, solution: Solution, now: int = 0, *, options: Pol
     before = sound_within(instance, solution)
     if options.seconds is not None:
         warm()
-    with inside("$.instance"):
+    with inside_documents():
         return engine.polish(instance, before, now=now, **asdict(options))
