@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from tests.oracle.formats.foreign_files import INSTANCE, LACAM, MAP, SCENARIO
-from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Run, corridor, save, solution
+from tests.oracle.running import HEAD_ON, TWO, TWO_PLANNED, Run, corridor, save, solution, town
 
 from carproof import write_instance
 
@@ -15,6 +15,10 @@ BOUND = {"format": "carproof-bound/1", "instance": "", "bound": 5, "scale": 1, "
     name: [] for name in ("resources", "exchanges", "cuts", "robots")
 }
 SLOW_END = {**TWO["graph"], "nodes": [*TWO["graph"]["nodes"][:4], {"id": "e", "duration": 2**62}]}
+ALIKE = {
+    "nodes": [{"id": 1}, {"id": "1"}, {"id": 2}],
+    "edges": [{"source": 1, "target": 2}, {"source": "1", "target": 2}],
+}
 DOCUMENTS: dict[str, object] = {
     "verdict": EMPTY_VERDICT,
     "nothing": {},
@@ -24,6 +28,8 @@ DOCUMENTS: dict[str, object] = {
     "stays": corridor([EAST], "stay"),
     "three": corridor([EAST, BEHIND, HEAD_ON]),
     "numbered": corridor([{**EAST, "id": 7}, {**BEHIND, "id": "7"}]),
+    "alike": {**town("xy", [{"id": "r", "start": 2, "goal": 2}], "park"), "graph": ALIKE},
+    "alike-plans": solution({"r": [[2, 0, None]]}),
     "none": {**TWO_PLANNED, "plans": [], "order": [], "unplanned": ["r1", "r2"]},
     "slow": {**TWO, "graph": {**TWO["graph"], "nodes": [{"id": "a", "duration": 2**40}, *TWO["graph"]["nodes"][1:]]}},
     "slow-e": {**corridor([EAST]), "graph": SLOW_END},
@@ -123,6 +129,11 @@ REFUSED = (
     ("query town.json plans.json r9", "ROBOT: the instance must have the robot, and has no 'r9' [request/robot]"),
     ("add town.json plans.json r1", "ROBOT: the robot to add must have no plan, and 'r1' has one [request/robot]"),
     ("query numbered.json none.json 7", "2 print as 7"),
+    (
+        "assign alike.json alike-plans.json r 2 1:3",
+        "Error: STOP 2: a resource's id must differ",
+        "2 print as 1 [instance/stops]",
+    ),
     ("query three.json broken.json r3", f"Error: broken.json: {CAPACITY}"),
     ("polish town.json plans.json --seconds 0", "--seconds: the seconds must be a number above 0, not 0.0 [polish/opt"),
     ("polish town.json plans.json --seconds 1 --iterations 1", "there must be either iterations or seconds, not both"),

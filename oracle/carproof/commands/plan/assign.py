@@ -4,9 +4,10 @@ from pathlib import Path
 
 import click
 
-from carp_spec import Instance, Neighbourhood, ResourceId, Stop
+from carp_spec import Instance, Neighbourhood, Refusal, ResourceId, Stop
 from carp_spec.documents.instances import write_instance
 from carp_spec.documents.solutions import write_solution
+from carp_spec.instance_rules import stops_are_places_to_serve
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, OutputFile, write_whole
 from carproof.command_line.options import Asked, asks_for_a_robot, gives_plans, listed, neighbourhood_options
@@ -44,7 +45,7 @@ def command(
     Exit codes: 0 it got the stops, 1 no plan was found, and nothing changed, 2 bad input.
     """
     problem, before, id = asked.read()
-    wanted = [stop_called(problem, each) for each in stops]
+    wanted = [stop_called(problem, each, f"$.stops[{place}].resource") for place, each in enumerate(stops)]
     with asked.naming():
         assigned, after = engine_named(engine).assign(problem, before, id, wanted, asked.now, planner)
     if further is not None:
@@ -57,10 +58,19 @@ def command(
     return Answer.of(assigned is not problem)
 
 
-def stop_called(instance: Instance, name: str) -> Stop:
+def stop_called(instance: Instance, name: str, path: str) -> Stop:
     """The stop that RESOURCE or RESOURCE:SERVICE names; if there is no such resource, a rule says so."""
-    places: dict[str, ResourceId] = {str(id): id for id in instance.graph.index}
     resource, _, service = name.rpartition(":")
-    if name in places or whole_number(service.removeprefix("-")) is None:
-        return Stop(places.get(name, name))
-    return Stop(places.get(resource, resource), int(service))
+    is_whole = any(str(id) == name for id in instance.graph.index)
+    if is_whole or whole_number(service.removeprefix("-")) is None:
+        return Stop(resource_called(instance, name, path))
+    return Stop(resource_called(instance, resource, path), int(service))
+
+
+def resource_called(instance: Instance, name: str, path: str) -> ResourceId:
+    """The resource whose id prints like the name, or the name; raises `Refusal` if `1` and `"1"` both do."""
+    called = [id for id in instance.graph.index if str(id) == name]
+    if len(called) > 1:
+        message = f"a resource's id must differ from the others when printed, and {len(called)} print as {name}"
+        raise Refusal("request", path, stops_are_places_to_serve.id, message)
+    return called[0] if called else name
