@@ -46,7 +46,7 @@ def command(*, asked: Asked, certificate: Path | None, engine: str | None, outpu
             write_whole(certificate, write(shown))
     is_told = output.write(write(query_document(plan)))
     if plan is None and is_told:
-        print_line(f"no plan: {why_unplanned(problem, others, id, now)}")
+        print_line(f"no plan: {why_unplanned(problem, others, id, now, followed)}")
     elif plan is not None and is_told:
         rows = [
             (visit.resource, visit.enter, "for ever" if visit.leave is None else visit.leave) for visit in plan.visits
