@@ -72,12 +72,13 @@ def drawn_delays(text: str, solution: Solution, seed: int) -> tuple[Delay, ...]:
     chance, _, most = text.partition(":")
     whole, _, part = chance.partition(".")
     share = whole_number(f"{whole or '0'}{part:0<{DIGITS}}")
-    if share is None or share > MILLION or len(part) > DIGITS:
+    if not whole + part or share is None or share > MILLION or len(part) > DIGITS:
         message = f"{text!r} must be a file of delays, or a chance from 0 to 1 with the most ticks, like 0.05:3"
         raise Refusal("option", "$.delays", delays_are_right.id, message)
     ticks = whole_number(most or "1")
     if ticks is None or not 0 < ticks < MILLION:
-        raise Refusal("option", "$.delays", delays_are_right.id, f"the most ticks must be a number above 0, not {most}")
+        message = f"the most ticks must be a whole number from 1 to {MILLION - 1}, not {most}"
+        raise Refusal("option", "$.delays", delays_are_right.id, message)
     return random_delays(solution, share, ticks, seed)
 
 

@@ -166,6 +166,16 @@ REFUSED = (
     ("execution simulate east.json east-plans.json --delays=x", "[request/delays]"),
     ("execution simulate east.json east-plans.json --delays=0.1:x", "[request/delays]"),
     ("execution simulate east.json east-plans.json --delays=0.00000001", "[request/delays]"),
+    ("execution simulate east.json east-plans.json --delays=", "--delays: '' must be a file of delays, or a chance"),
+    ("execution simulate east.json east-plans.json --delays .", "--delays: '.' must be a file of delays, or a chance"),
+    (
+        "execution simulate east.json east-plans.json --delays :3",
+        "--delays: ':3' must be a file of delays, or a chance",
+    ),
+    (
+        "execution simulate east.json east-plans.json --delays 0.1:1000000",
+        "must be a whole number from 1 to 999999, not",
+    ),
     ("execution simulate east.json east-plans.json --delays /proc/self/mem", "/proc/self/mem: it cannot be read: "),
     (f"execution simulate east.json east-plans.json --delays {'9' * 300}", "[request/delays]"),
     (f"execution simulate east.json east-plans.json --delays 0.1:{'9' * 5000}", "[request/delays]"),
