@@ -14,10 +14,11 @@ from carp_optimum.optimum import optimum
 from carp_optimum.sat.proving import write_proof
 from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot
 from carp_spec.documents.instances import write_instance
-from carp_verify.optimum import unsolvable
+from carp_spec.model import Group, Stop
+from carp_verify.optimum import joint_search, unsolvable
 from carp_verify.optimum.clauses import dimacs
 from carp_verify.optimum.encoding import Evidence, beat_formula
-from carp_verify.optimum.joint_search import least_total_cost
+from carp_verify.optimum.joint_search import joint_states, least_total_cost
 from carp_verify.optimum.proof import PROOF_FORMAT, ProofError, verify_proof
 from carp_verify.optimum.unsolvable import Clauses, FullGoal, NoWay, Obstacle, States, why_no_obstacle
 
@@ -194,11 +195,42 @@ def test_more_joint_states_than_are_searched_are_refused_before_the_search(monke
     assert why_no_obstacle(HEAD_ON, States()) == "the joint states may be more than 100"
 
 
+def test_joint_states_are_counted_up_to_the_limit_alone() -> None:
+    many = tuple(Robot(number, 0, 1) for number in range(100_000))
+    assert joint_states(line(2, *many), most=10) == (2 + 2 * 2) ** 2
+    assert why_no_obstacle(line(2, *many), States()) == "the joint states may be more than 2000000"
+
+
+def test_ways_over_more_stops_and_resources_than_the_limit_are_not_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    stops = tuple(Stop(resource) for resource in (3, 0, 3))
+    back = line(4, Robot("a", 0, stops=stops), directed=True)
+    monkeypatch.setattr(unsolvable, "LARGEST_TABLE", 12)
+    assert why_no_obstacle(back, NoWay("a")) is None
+    monkeypatch.setattr(unsolvable, "LARGEST_TABLE", 11)
+    assert why_no_obstacle(back, NoWay("a")) == "its stops by the resources are 12, and at most 11 are allowed"
+
+
 def test_a_search_that_outgrows_its_limit_is_no_obstacle(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(least_total_cost, "__defaults__", (10, None))
     assert why_no_obstacle(HEAD_ON, States()) == (
         "the joint states that the search looks at must be at most 10, the limit, and would be more"
     )
+
+
+def test_steps_to_joint_states_are_counted_before_they_are_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    # no more than two robots are ever in the group, but three may step into each of its places
+    group = tuple(range(6))
+    edges = tuple((one, other) for one in group for other in group if one != other)
+    outside = tuple((away, one) for away in range(6, 9) for one in group)
+    graph = ResourceGraph(tuple(map(Resource, range(10))), edges + outside, True, (Group("all", group, 2),))
+    crowd = Instance(graph, tuple(Robot(number, number, 9) for number in range(6, 9)))
+    monkeypatch.setattr(joint_search, "LARGEST_STEPS", 2 * 7**3 - 1)
+    assert why_no_obstacle(crowd, States()) == (
+        "the joint steps that the search looks at, by the most constraints of a resource, must be at most 685, the "
+        "limit, and would be more"
+    )
+    monkeypatch.undo()
+    assert why_no_obstacle(crowd, States()) is None
 
 
 @pytest.mark.parametrize("kind", ["clauses"], indirect=True)

@@ -9,11 +9,12 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from heapq import heappop, heappush
 from itertools import combinations, product
+from math import prod
 from typing import Literal, TypeAlias
 
 from carp_spec import Instance, ResourceId, Robot
 from carp_spec.inputs.values import require_instance
-from carp_verify.optimum.rules import LARGEST_SEARCH, refuse_size
+from carp_verify.optimum.rules import LARGEST_SEARCH, LARGEST_STEPS, refuse_size
 
 Phase: TypeAlias = Literal["waits", "moves", "arrived"]
 
@@ -44,6 +45,11 @@ class _Search:
         self.instance = instance
         self.constraints = instance.graph.constraints
         self.last_release = max((robot.release for robot in instance.robots), default=0)
+        graph = instance.graph
+        blocks = {number for number, group in enumerate(graph.groups) if group.capacity == 1}
+        self.blocks = {each: blocks & {*graph.groups_of.get(each, ())} for each in graph.index}
+        self.width = max((len(graph.constraints_of(each)) for each in graph.index), default=1)
+        self.steps = 0
 
     def entering(self, robot: Robot, resource: ResourceId, served: int) -> Iterator[State]:
         """The states of a robot that enters a resource now: on its way, and at its last stop also arrived."""
@@ -104,27 +110,32 @@ class _Search:
 
     def are_close(self, one: ResourceId, other: ResourceId) -> bool:
         """Whether two resources are the same or lie in one group of capacity 1."""
-        groups = self.constraints[len(self.instance.graph.resources) :]
-        return one == other or any(each.capacity == 1 and {one, other} <= {*each.resources} for each in groups)
+        return one == other or not self.blocks[one].isdisjoint(self.blocks[other])
 
     def following(self, tick: int, before: Joint) -> Iterator[Joint]:
-        """The joint states at the tick after one at the tick before."""
+        """The joint states at the tick after one at the tick before; all steps to them are counted before the first."""
         choices = [list(self.at(robot, tick, state)) for robot, state in zip(self.instance.robots, before, strict=True)]
+        self.steps += self.width * prod(map(len, choices))
+        steps = "the joint steps that the search looks at, by the most constraints of a resource,"
+        refuse_size(steps, self.steps, LARGEST_STEPS)
         for after in product(*choices):
             if self.is_allowed(before, after):
                 yield after
 
 
-def joint_states(instance: Instance) -> int:
-    """An upper bound on the number of joint states of all robots, apart from the tick.
+def joint_states(instance: Instance, most: int = LARGEST_SEARCH) -> int:
+    """An upper bound on the number of joint states of all robots, apart from the tick; beyond `most` it may be low.
 
     A robot is in a resource, with a number of ticks to stay and of stops served, or waits for its release, or is gone
     or parked.
     """
-    states = 1
+    states, resources = 1, instance.graph.resources
+    durations = sum(resource.duration for resource in resources)
     for robot in instance.robots:
-        layer = sum(instance.duration(robot.id, resource.id) + 1 for resource in instance.graph.resources)
+        layer = robot.pace * durations + len(resources)
         states *= 2 + len(robot.stops) * layer + sum(stop.service for stop in robot.stops)
+        if states > most:
+            break
     return states
 
 
@@ -133,7 +144,8 @@ def least_total_cost(
 ) -> int | None:
     """The least total cost of plans for all robots, or `None` if there are none.
 
-    Raises `Refusal` before more than `most` joint states are looked at; `on_step` is called at each, and may raise.
+    Raises `Refusal` before more than `most` joint states, or `LARGEST_STEPS` steps, are looked at; `on_step` is called
+    at each state, and may raise.
     """
     require_instance(instance)
     search = _Search(instance)

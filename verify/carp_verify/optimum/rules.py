@@ -8,6 +8,7 @@ from carp_spec.rule import DESIGN, rule
 LARGEST_FORMULA = 20_000_000
 LARGEST_PROOF = 5_000_000
 LARGEST_SEARCH = 2_000_000
+LARGEST_STEPS = 10_000_000
 LARGEST_TABLE = 20_000_000
 MOST_ORDERED = 9
 
@@ -15,8 +16,9 @@ MOST_ORDERED = 9
 @rule(
     "optimum/size",
     f"The formula of an optimum has at most {LARGEST_FORMULA} clauses, a search over the states of all robots together "
-    f"looks at no more than {LARGEST_SEARCH}, and all orders are tried of at most {MOST_ORDERED} robots. A proof is "
-    f"checked of at most {LARGEST_TABLE} pairs of a robot and a resource: all this fits into memory and time.",
+    f"looks at no more than {LARGEST_SEARCH}, and at {LARGEST_STEPS} steps to them, each counted with the most "
+    f"constraints that a resource has. All orders are tried of at most {MOST_ORDERED} robots. A proof is checked of at "
+    f"most {LARGEST_TABLE} pairs of a robot and a resource: all this fits into memory and time.",
     DESIGN,
 )
 def size_is_bounded(size: int, limit: int) -> bool:

@@ -20,6 +20,7 @@ import msgspec
 from carp_spec import Instance, Refusal, ResourceId, RobotId
 from carp_verify.optimum.encoding import Encoding
 from carp_verify.optimum.joint_search import joint_states, least_total_cost
+from carp_verify.optimum.rules import LARGEST_TABLE, size_is_bounded
 
 FEW_STATES = 2_000_000
 
@@ -81,13 +82,16 @@ def why_no_obstacle(instance: Instance, obstacle: Obstacle) -> str | None:
 def is_searched(instance: Instance) -> bool:
     """Whether the joint states, at all ticks up to the last release and one more, are few enough to be searched."""
     last_release = max((robot.release for robot in instance.robots), default=0)
-    return joint_states(instance) * (last_release + 2) <= FEW_STATES
+    return joint_states(instance, FEW_STATES) * (last_release + 2) <= FEW_STATES
 
 
 def _why_way(instance: Instance, id: RobotId) -> str | None:
     if id not in instance.robot:
         return f"the instance has no robot {id}"
     robot = instance.robot[id]
+    size = len(robot.stops) * len(instance.graph.resources)
+    if not size_is_bounded(size, LARGEST_TABLE):
+        return f"its stops by the resources are {size}, and at most {LARGEST_TABLE} are allowed"
     places = [robot.start, *(stop.resource for stop in robot.stops)]
     if all(_leads_to(instance, *leg) for leg in pairwise(places)):
         return f"there is a way from {' to '.join(map(str, places))}"
