@@ -8,6 +8,7 @@ from tests.verify.optimum.models import has_model, model_of
 from tests.verify.optimum.tiny import TINY
 
 from carp_spec import Instance, Plan, Refusal, Resource, ResourceGraph, Robot, total_cost, violations_of
+from carp_spec.model import Group
 from carp_verify.optimum.encoding import Conflict, Encoding, Exchange, violated
 from carp_verify.optimum.joint_search import least_total_cost
 from carproof.testing.strategies import PlannedInstance, instances, planned_instances
@@ -132,3 +133,27 @@ def test_many_robots_in_a_wide_place_are_counted() -> None:
     instance = Instance(graph, tuple(Robot(i, 0, 2) for i in range(5)))
     for bound, possible in ((2, False), (3, True)):
         assert has_model(bounded(instance, [2] * 5, bound, closed=True).formula) == possible
+
+
+def between_groups(size: int, robots: int) -> Encoding:
+    """Robots that may all move from each resource of one group of capacity 1 to each of another, and back."""
+    ids = range(2 * size)
+    groups = (Group("left", tuple(ids[:size])), Group("right", tuple(ids[size:])))
+    edges = tuple((one, other) for one in ids[:size] for other in ids[size:])
+    graph = ResourceGraph(tuple(map(Resource, ids)), edges, groups=groups)
+    ends = [(0, size), (size, 0)]
+    encoding = Encoding(Instance(graph, tuple(Robot(each, *ends[each]) for each in range(robots))), most=900)
+    encoding.grow_to([2] * robots)
+    return encoding
+
+
+def test_exchanges_are_no_more_than_clauses_before_one_is_forbidden(monkeypatch: pytest.MonkeyPatch) -> None:
+    encoding = between_groups(6, 2)
+    clauses = len(encoding.formula.clauses)
+    with pytest.raises(Refusal, match=r"^\$\.robots: the clauses of the formula must be at most 900"):
+        encoding.forbid_all()
+    assert len(encoding.formula.clauses) == clauses
+    between_groups(6, 1).forbid_all()  # one robot exchanges nothing
+    monkeypatch.setattr("carp_verify.optimum.encoding.LARGEST_FORMULA", 59)
+    with pytest.raises(Refusal, match="the pairs of moves that exchange close resources must be at most 59"):
+        between_groups(6, 1).forbid_all()

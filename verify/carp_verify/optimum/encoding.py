@@ -19,7 +19,7 @@ from carp_spec.joint_rules import opposite_moves
 from carp_spec.windows import stays_within
 from carp_verify.optimum.clauses import Clause, Formula, Literal
 from carp_verify.optimum.robot_clauses import RobotClauses, predecessors
-from carp_verify.optimum.rules import LARGEST_FORMULA, LARGEST_PROOF
+from carp_verify.optimum.rules import LARGEST_FORMULA, LARGEST_PROOF, refuse_size
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,7 +143,10 @@ class Encoding:
         yield from dict.fromkeys(found) if graph.groups else found
 
     def conflicts(self) -> Iterator[Conflict | Exchange]:
-        """All conflicts that can happen within the horizons: of constraints, and exchanges."""
+        """All conflicts that can happen within the horizons: of constraints, and exchanges.
+
+        Raises `Refusal` for more exchanges than the formula may have clauses, as each has one at least.
+        """
         yield from self.entries()
         movers: dict[tuple[int, Move], set[int]] = defaultdict(set)
         for position, robot in enumerate(self.robots):
@@ -151,9 +154,12 @@ class Encoding:
                 for target in self.instance.graph.successors[source]:
                     if any(self.robots[position].stays(target, tick)):
                         movers[tick, (source, target)].add(position)
+        exchanges = 0
         for exchange in _exchanges(self.instance, movers):
             there, back = (movers[exchange.tick, move] for move in (exchange.one, exchange.other))
             if len(there | back) > 1:
+                exchanges += 1
+                self.formula.require(exchanges)
                 yield exchange
 
     def forbid_all(self) -> None:
@@ -212,11 +218,15 @@ def beat_formula(instance: Instance, cost: int | None, evidence: Evidence, most:
 
 
 def _exchanges(instance: Instance, movers: Collection[tuple[int, Move]]) -> Iterator[Exchange]:
-    """The pairs of these moves at one tick that two robots must not both make."""
+    """The pairs of these moves at one tick that two robots must not both make; raises `Refusal` for too many."""
     index = instance.graph.index
     opposite = opposite_moves(instance.graph, movers)
+    pairs = 0
     for tick, move in movers:
-        for _, other in opposite((tick, move)):
+        others = opposite((tick, move))
+        pairs += len(others)
+        refuse_size("the pairs of moves that exchange close resources", pairs, LARGEST_FORMULA)
+        for _, other in others:
             if (index[move[0]], index[move[1]]) < (index[other[0]], index[other[1]]):
                 yield Exchange(tick, move, other)
 
