@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from time import process_time
 
 import msgspec
 import pytest
@@ -247,3 +248,15 @@ def test_where_following_is_forbidden_a_plan_that_keeps_no_free_tick_is_no_rival
     plan, certificate = question.certified()
     assert (plan, certificate.bound) == (None, None)
     assert verify_query(instance, question.solution, certificate) is None
+
+
+def test_many_stays_in_one_resource_are_counted_once() -> None:
+    many = 20_000
+    hall = ResourceGraph((Resource("hall", many),), ())
+    robots = tuple(Robot(number, "hall", "hall", release=many - number) for number in range(many))
+    traffic = Traffic(Instance(hall, robots, "park"))
+    started = process_time()
+    for robot in robots:
+        traffic.commit(Plan(robot.id, (Visit("hall", robot.release, None),)))
+    assert list(traffic.windows("hall", 0)) == [Window(0, many)]
+    assert process_time() - started < 2

@@ -21,7 +21,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
-from itertools import pairwise, product, zip_longest
+from itertools import accumulate, pairwise, product, zip_longest
 
 from carp_spec import Instance, Plan, Refusal, ResourceId, Robot, Rule, Solution, Stop, Visit, has_ended
 from carp_spec.documents.query_certificates import QueryCertificateDocument, ServedLayer
@@ -47,8 +47,8 @@ class Traffic:
     def __init__(self, instance: Instance) -> None:
         self.instance = instance
         self._capacities = [constraint.capacity for constraint in instance.graph.constraints]
-        self._changes: dict[int, list[int]] = defaultdict(lambda: [0])
-        self._inside: dict[int, list[int]] = defaultdict(lambda: [0])
+        self._changes: dict[int, dict[int, int]] = defaultdict(lambda: {0: 0})
+        self._counts: dict[int, tuple[list[int], list[int]]] = {}
         self._moves: set[tuple[int, int, int]] = set()
 
     def commit(self, plan: Plan) -> None:
@@ -58,23 +58,26 @@ class Traffic:
             kept = () if following is None else graph.constraints_of(following.resource)
             for constraint in graph.constraints_of(visit.resource):
                 gap = 0 if constraint in kept else self.instance.gap
-                first = self._cut(constraint, visit.enter)
-                inside = self._inside[constraint]
-                last = len(inside) if visit.leave is None else self._cut(constraint, visit.leave + gap)
-                for position in range(first, last):
-                    inside[position] += 1
+                self._change(constraint, visit.enter, 1)
+                if visit.leave is not None:
+                    self._change(constraint, visit.leave + gap, -1)
         for visit, following in pairwise(plan.visits):
             for areas in product(graph.areas_of(visit.resource), graph.areas_of(following.resource)):
                 self._moves.add((following.enter, *areas))
 
-    def _cut(self, constraint: int, tick: int) -> int:
-        """The position of the tick among those at which something changes; the tick is inserted if it is missing."""
-        changes, inside = self._changes[constraint], self._inside[constraint]
-        position = bisect_left(changes, tick)
-        if position == len(changes) or changes[position] != tick:
-            changes.insert(position, tick)
-            inside.insert(position, inside[position - 1])
-        return position
+    def _change(self, constraint: int, tick: int, robots: int) -> None:
+        """Note that so many robots more are in what the constraint is on from the tick on."""
+        changes = self._changes[constraint]
+        changes[tick] = changes.get(tick, 0) + robots
+        self._counts.pop(constraint, None)
+
+    def _count(self, constraint: int) -> tuple[list[int], list[int]]:
+        """The ticks at which something changes, and the number of robots inside from each on."""
+        if constraint not in self._counts:
+            changes = self._changes[constraint]
+            ticks = sorted(changes)
+            self._counts[constraint] = ticks, [*accumulate(map(changes.__getitem__, ticks))]
+        return self._counts[constraint]
 
     def size(self, resource: ResourceId) -> int:
         """The number of ticks at which the number of robots in the resource or its groups may change."""
@@ -87,7 +90,7 @@ class Traffic:
 
     def _room(self, constraint: int, tick: int) -> Iterator[Window]:
         """The intervals in which the constraint has room that end after the tick, in order of time."""
-        changes, inside = self._changes[constraint], self._inside[constraint]
+        changes, inside = self._count(constraint)
         capacity = self._capacities[constraint]
         position = bisect_right(changes, tick) - 1
         while position > 0 and inside[position] < capacity and inside[position - 1] < capacity:
