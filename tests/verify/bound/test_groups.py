@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from itertools import product
+from time import process_time
 
 import msgspec
 import pytest
@@ -96,6 +97,16 @@ def test_who_is_seen_several_times_pays_for_each_tick_of_its_stay_in_whatever_or
         paid = sum(price for tick, places, price in sights if first <= tick < end and resource in places)
         assert fees.on_the_way(resource, first, end) == paid
     assert (fees.last, Fees([(5, 1)], sights).last) == (3, 5)
+
+
+def test_what_a_robot_pays_is_found_in_a_time_that_hardly_grows_with_its_deadlines() -> None:
+    many = 50_000
+    fees = Fees([(tick, 1) for tick in range(many)], [(tick, {"a"}, 1) for tick in range(many)])
+    started = process_time()
+    for tick in range(2000):
+        assert fees.at_arrival(tick) == many - tick
+        assert fees.on_the_way("a", tick, many) == many - tick
+    assert process_time() - started < 2
 
 
 @pytest.mark.parametrize("honest", [deadline_certificate, sight_certificate])

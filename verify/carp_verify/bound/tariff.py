@@ -3,7 +3,6 @@
 from bisect import bisect_left
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import accumulate, chain
-from operator import itemgetter
 from typing import TypeAlias
 
 from carp_spec import Instance, ResourceId, RobotId
@@ -12,6 +11,20 @@ from carp_verify.bound.rules import LARGEST_TABLE, is_new, is_price, require, re
 
 Row: TypeAlias = tuple[tuple[ResourceId, ...], int, int]
 """A group, a resource or the two of an exchange, with a tick and a price."""
+
+
+class Payments:
+    """Prices at ticks, each with the sum of all before it."""
+
+    def __init__(self, paid: Iterable[tuple[int, int]]) -> None:
+        by_tick = sorted(paid)
+        self._ticks = [tick for tick, _ in by_tick]
+        self._sums = [0, *accumulate(price for _, price in by_tick)]
+        self.total = self._sums[-1]
+
+    def before(self, tick: int) -> int:
+        """The sum of the prices before the tick."""
+        return self._sums[bisect_left(self._ticks, tick)]
 
 
 class Fees:
@@ -27,21 +40,25 @@ class Fees:
         sights: Sequence[tuple[int, Collection[ResourceId], int]] = (),
     ) -> None:
         self.arrivals = arrivals
-        self._sights = sorted(sights, key=itemgetter(0))
-        self._ticks = [tick for tick, _, _ in self._sights]
-        self.last = max([-1, *(tick for tick, _ in arrivals), *self._ticks])
+        self._arrived = Payments(arrivals)
+        seen: dict[ResourceId, list[tuple[int, int]]] = {}
+        for tick, places, price in sights:
+            for place in {*places}:
+                seen.setdefault(place, []).append((tick, price))
+        self._seen = {place: Payments(paid) for place, paid in seen.items()}
+        self.last = max([-1, *(tick for tick, _ in arrivals), *(tick for tick, _, _ in sights)])
         """The last tick at which anything is paid, if it is not negative."""
 
     def on_the_way(self, resource: ResourceId, first: int, end: int) -> int:
         """The payment of a robot that is in the resource in [first, end), on its way."""
-        if not self._ticks:
+        if resource not in self._seen:
             return 0
-        seen = self._sights[bisect_left(self._ticks, first) : bisect_left(self._ticks, end)]
-        return sum(price for _, places, price in seen if resource in places)
+        seen = self._seen[resource]
+        return seen.before(max(first, end)) - seen.before(first)
 
     def at_arrival(self, tick: int) -> int:
         """The payment of a robot that enters its goal for the last time at the tick."""
-        return sum(price for last, price in self.arrivals if tick <= last)
+        return self._arrived.total - self._arrived.before(tick)
 
 
 def fees_of(instance: Instance, deadlines: Sequence[DeadlinesDocument]) -> Mapping[RobotId, Fees]:
