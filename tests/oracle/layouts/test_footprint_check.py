@@ -5,6 +5,7 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations, pairwise
 from pathlib import Path
+from time import process_time
 
 import pytest
 from hypothesis import given
@@ -13,6 +14,7 @@ from tests.oracle.layouts.roadmaps import Place, graphml
 from tests.oracle.running import Run
 
 from carp_spec import Carp, Instance, Plan, Refusal, Resource, ResourceGraph, Robot, Solution, Visit
+from carp_verify.footprint.apart import footprint_violations
 from carproof import Footprint, Settings, check, import_layout, write_instance, write_solution
 from carproof.engines import engine_named
 
@@ -132,6 +134,31 @@ def test_a_lane_is_at_the_middle_of_its_ends_rounded_down(end: Place) -> None:
     for off in ((1, 0), (-1, 0), (0, 1), (0, -1)):
         with pytest.raises(Refusal, match="footprint/lanes"):
             near(SMALL, {"a": (0, 0), "b": end, "ab": (middle[0] + off[0], middle[1] + off[1])}, "a ab b")
+
+
+def test_no_more_meetings_are_looked_for_than_are_listed() -> None:
+    hall = floor({"hall": (0, 0)})
+    crowd = replace(hall, robots=tuple(Robot(number, "hall", "hall") for number in range(2000)))
+    plans = [Plan(robot.id, (Visit("hall", 0, None),)) for robot in crowd.robots]
+    started = process_time()
+    found = footprint_violations(crowd, plans, SMALL, 100)
+    assert process_time() - started < 2
+    assert [each.robots for each in found[:4]] == [(0, 1), (0, 2), (1, 2), (0, 3)]
+    assert found == footprint_violations(crowd, plans[:40], SMALL)[:100]
+
+
+@pytest.mark.parametrize("most", [1, 2, 3, 7, 30])
+def test_the_meetings_listed_are_the_first_of_all(most: int) -> None:
+    cells = floor({f"{x}{y}": (x, y) for x in range(4) for y in range(4)})
+    crowd = replace(cells, robots=tuple(Robot(number, "00", "00") for number in range(6)))
+    plans = []
+    for robot in crowd.robots:  # all go the same way, each a tick after the one before, and wait for two at each turn
+        ticks = [int(robot.id) // 2 + 2 * step for step in range(8)]
+        way = ("00", "10", "11", "01", "02", "12", "22", "21")
+        plans.append(Plan(robot.id, tuple(Visit(at, tick, tick + 2) for at, tick in zip(way, ticks, strict=True))))
+    every = footprint_violations(crowd, plans, Footprint(9, 9), cells=10)
+    assert len(every) > 30
+    assert footprint_violations(crowd, plans, Footprint(9, 9), most, 10) == every[:most]
 
 
 def test_meetings_come_in_the_order_of_time_and_the_first_are_kept() -> None:

@@ -1,8 +1,9 @@
 """The check that vehicles of a size keep apart: shapes that overlap, and visits in both that share a tick."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from heapq import nsmallest
 from math import isqrt
+from operator import attrgetter
 
 from carp_spec import Instance, Plan, ResourceId, RobotId, Violation, Visit
 from carp_spec.refusal import Refusal
@@ -45,10 +46,7 @@ def footprint_violations(
     for shape, plan, visit in swept:
         if visit.leave is None or visit.enter < visit.leave:
             stays.setdefault(shape, []).append((visit.enter, visit.leave, plan.robot, visit.resource))
-    found = vehicles_keep_apart(_once(_meetings(stays, measured)), size)
-    if most is None:
-        return tuple(sorted(found, key=_first))
-    return tuple(nsmallest(most, found, key=_first))
+    return tuple(vehicles_keep_apart(iter(_earliest(_meetings(stays, measured), most)), size))
 
 
 def _swept_on_lanes(instance: Instance, plans: Sequence[Plan]) -> Iterator[tuple[Shape, Plan, Visit]]:
@@ -57,26 +55,33 @@ def _swept_on_lanes(instance: Instance, plans: Sequence[Plan]) -> Iterator[tuple
     return ((shape[each.resource], plan, each) for plan in plans for each in plan.visits if each.resource in shape)
 
 
-def _once(meetings: Iterator[Meeting]) -> Iterator[Meeting]:
-    """Each two visits once, of whose shapes several may overlap."""
-    seen: set[frozenset[tuple[RobotId, ResourceId, int]]] = set()
+def _earliest(meetings: Iterable[Iterator[Meeting]], most: int | None) -> Sequence[Meeting]:
+    """At most the first `most` meetings, each two visits once, of whose shapes several may overlap.
+
+    Those of each iterator are in order of time, and at one time those of an earlier iterator come first. So no more
+    than `most` of an iterator are looked for, nor are many more kept.
+    """
+    kept: dict[frozenset[tuple[RobotId, ResourceId, int]], Meeting] = {}
     for each in meetings:
-        visits = frozenset((*pair, each.start) for pair in zip(each.robots, each.resources, strict=True))
-        if visits not in seen:
-            seen.add(visits)
-            yield each
+        more = 0
+        for meeting in each:
+            visits = frozenset((*pair, meeting.start) for pair in zip(meeting.robots, meeting.resources, strict=True))
+            more += visits not in kept
+            kept.setdefault(visits, meeting)
+            if most is not None and more >= most:
+                break
+        if most is not None and len(kept) > 10 * most:
+            kept = dict(nsmallest(most, kept.items(), key=lambda item: item[1].start))
+    return sorted(kept.values(), key=attrgetter("start"))[:most]
 
 
-def _first(violation: Violation) -> int:
-    return violation.start or 0
-
-
-def _meetings(stays: dict[Shape, list[Stay]], size: Footprint) -> Iterator[Meeting]:
+def _meetings(stays: dict[Shape, list[Stay]], size: Footprint) -> Iterator[Iterator[Meeting]]:
+    """The meetings in each shape, and in each two that overlap."""
     for here in stays.values():
-        yield from _together(here, ())
+        yield _together(here, ())
     for one, two in _near([*stays], size):
         if overlap(one, two, size):
-            yield from _together(stays[one], stays[two])
+            yield _together(stays[one], stays[two])
 
 
 def _near(all_shapes: Sequence[Shape], size: Footprint) -> list[tuple[Shape, Shape]]:
