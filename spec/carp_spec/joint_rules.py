@@ -2,7 +2,7 @@
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from itertools import groupby, pairwise, product
+from itertools import groupby, pairwise
 from operator import itemgetter
 from typing import TypeAlias
 
@@ -114,9 +114,9 @@ def exchanges_are_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator
         return move[0], index[move[1][0]], index[move[1][1]]
 
     opposite = opposite_moves(graph, movers)
-    pairs = ((one, other) for one in movers for other in opposite(one) if place(one) <= place(other))
-    for one, other in sorted(pairs, key=lambda pair: [*map(place, pair)]):
-        robots = tuple(dict.fromkeys(movers[one] + movers[other]))
+    pairs = ((one, other) for one in sorted(movers, key=place) for other in sorted(opposite(one), key=place))
+    for one, other in pairs:
+        robots = tuple(dict.fromkeys(movers[one] + movers[other])) if place(one) <= place(other) else ()
         if len(robots) > 1:
             tick, (source, target) = one
             to = f"{source} and {target}" if other[1] == (target, source) else f"{one[1]} and {other[1]}"
@@ -124,19 +124,27 @@ def exchanges_are_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator
 
 
 def opposite_moves(graph: ResourceGraph, moves: Collection[TimedMove]) -> Callable[[TimedMove], Collection[TimedMove]]:
-    """The moves at the same tick that lead from the areas that a move leads to into those that it leads from."""
+    """The moves at the same tick that lead from the areas that a move leads to into those that it leads from.
+
+    They are in the order of the first areas that both share, and else in that of the moves.
+    """
     if not graph.groups:
         return lambda move: [back] if (back := (move[0], move[1][::-1])) in moves else []
-    areas = {each: graph.areas_of(each) for each in graph.index}
-    leading: dict[tuple[int, ...], list[TimedMove]] = defaultdict(list)
-    for tick, (source, target) in moves:
-        for way in product(areas[source], areas[target]):
-            leading[tick, *way].append((tick, (source, target)))
+    areas = {each: dict.fromkeys(graph.areas_of(each)) for each in graph.index}
+    leaving: dict[tuple[int, int], list[TimedMove]] = defaultdict(list)
+    for move in moves:
+        for area in areas[move[1][0]]:
+            leaving[move[0], area].append(move)
+
+    def first(one: ResourceId, other: ResourceId) -> int:
+        """The place of the first of the areas of one resource that another one shares."""
+        return next(place for place, area in enumerate(areas[one]) if area in areas[other])
 
     def opposite(move: TimedMove) -> Collection[TimedMove]:
         tick, (source, target) = move
-        back = product(areas[target], areas[source])
-        return dict.fromkeys(each for way in back for each in leading.get((tick, *way), ()))
+        near = dict.fromkeys(each for area in areas[target] for each in leaving.get((tick, area), ()))
+        back = [each for each in near if not areas[source].keys().isdisjoint(areas[each[1][1]])]
+        return sorted(back, key=lambda each: (first(target, each[1][0]), first(source, each[1][1])))
 
     return opposite
 

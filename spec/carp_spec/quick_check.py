@@ -25,6 +25,8 @@ LATEST = 1 << 30
 """Ticks from here on are left to the rules. So are numbers of resources and edges that are larger."""
 LARGEST = 2**63 - 1
 """Of a whole number in an array."""
+MOST_WAYS = 30_000_000
+"""More ways from areas into areas are left to the rules, which take no memory for each."""
 
 
 def is_large(plans: Sequence[Plan]) -> bool:
@@ -158,6 +160,9 @@ def _moves_do_not_meet(graph: ResourceGraph, source: "Longs", target: "Longs", t
         return False
     if graph.groups:
         areas = [graph.areas_of(each.id) for each in graph.resources]
+        sizes = np.array([*map(len, areas)], np.int64)
+        if (sizes[source] * sizes[target]).sum() > MOST_WAYS:
+            return False
         move, source = _each_of(areas, source)
         way, target = _each_of(areas, target[move])
         source, tick, number = source[way], tick[move[way]], move[way] * size

@@ -1,13 +1,16 @@
 """Robots together: who is blamed, where and when."""
 
+import tracemalloc
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import islice
+from time import process_time
 from typing import TypeAlias
 
 import pytest
 from tests.spec.making import Stay, instance_on, line, plan_of
 
-from carp_spec import Group, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Violation, violations_of
+from carp_spec import Group, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Violation, Visit, violations_of
 from carp_spec.joint_rules import capacity_is_kept, exchanges_are_avoided, solution_covers_robots, solution_orders_plans
 
 NAMES = ("r1", "r2", "r3", "r4")
@@ -173,3 +176,32 @@ def test_a_solution_is_told_what_it_names_too_often_and_too_rarely() -> None:
         "[solution/order] robot r9 (the order must name it once, and names it 0 times)",
         "[solution/order] robot r3 (the order must name it never, and names it 1 times)",
     ]
+
+
+def test_the_first_exchange_between_groups_is_found_without_all_others() -> None:
+    many = 1000
+    ids = range(2 * many)
+    groups = (Group("left", tuple(ids[:many])), Group("right", tuple(ids[many:])))
+    graph = ResourceGraph(tuple(map(Resource, ids)), (), groups=groups)
+    plans = [Plan(each, (Visit(each, 0, 1), Visit((each + many) % (2 * many), 1, 2))) for each in ids]
+    crowd = Instance(graph, tuple(Robot(each, each, each) for each in ids))
+    started = process_time()
+    found = [*islice(exchanges_are_avoided(crowd, plans), 3)]
+    assert process_time() - started < 1
+    assert [each.robots for each in found] == [(0, many), (0, many + 1), (0, many + 2)]
+
+
+def test_groups_by_groups_take_no_memory() -> None:
+    """Each of two resources is alone in many groups of capacity 1."""
+    groups = tuple(Group(f"{each}{number}", (each,)) for each in "ab" for number in range(500))
+    graph = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),), groups=groups)
+    instance = Instance(graph, tuple(Robot(number, "a", "b", release=2 * number) for number in range(4)))
+    ticks = [robot.release for robot in instance.robots]
+    plans = [
+        Plan(robot, (Visit("a", tick, tick + 1), Visit("b", tick + 1, tick + 2))) for robot, tick in enumerate(ticks)
+    ]
+    tracemalloc.start()
+    assert violations_of(instance, plans) == ()
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 10_000_000

@@ -11,7 +11,7 @@ from tests.spec.strategies import SIZES, instances_with_plans
 
 import carp_optimized
 import carp_reference
-from carp_spec import Carp, Group, Instance, Plan, Robot, Visit, judge, violations_of
+from carp_spec import Carp, Group, Instance, Plan, Robot, Visit, judge, quick_check, violations_of
 from carp_spec.execution.logs import judge_log
 from carp_spec.execution.traces import Trace
 from carp_spec.model import Following, Resource, ResourceGraph
@@ -104,6 +104,17 @@ def test_what_is_wrong_at_ticks_that_arrays_do_not_hold_does_not_pass(
     instance: Instance, plans: tuple[Plan, ...], now: int | None
 ) -> None:
     assert not breaks_no_rule(instance, plans, now)
+
+
+def test_more_ways_between_areas_than_the_limit_are_left_to_the_rules(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One move from a resource in two groups of capacity 1 to one in none: three ways."""
+    graph = ResourceGraph(
+        (Resource("a"), Resource("b")), (("a", "b"),), groups=(Group("g", ("a",)), Group("h", ("a",)))
+    )
+    plans = [plan_of("r", ("a", 0, 1), ("b", 1, 2))]
+    for most, passes in ((3, True), (2, False)):
+        monkeypatch.setattr(quick_check, "MOST_WAYS", most)
+        assert breaks_no_rule(Instance(graph, (Robot("r", "a", "b"),)), plans) == passes
 
 
 def test_an_exchange_with_a_group_does_not_pass() -> None:

@@ -152,7 +152,7 @@ def test_the_meetings_listed_are_the_first_of_all(most: int) -> None:
     cells = floor({f"{x}{y}": (x, y) for x in range(4) for y in range(4)})
     crowd = replace(cells, robots=tuple(Robot(number, "00", "00") for number in range(6)))
     plans = []
-    for robot in crowd.robots:  # all go the same way, each a tick after the one before, and wait for two at each turn
+    for robot in crowd.robots:  # all go the same way in twos, a tick apart, with two ticks at each step
         ticks = [int(robot.id) // 2 + 2 * step for step in range(8)]
         way = ("00", "10", "11", "01", "02", "12", "22", "21")
         plans.append(Plan(robot.id, tuple(Visit(at, tick, tick + 2) for at, tick in zip(way, ticks, strict=True))))

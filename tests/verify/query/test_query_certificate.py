@@ -1,5 +1,6 @@
 """The checker of query certificates: it accepts what is true and shown, and nothing else."""
 
+import tracemalloc
 from collections.abc import Sequence
 from dataclasses import replace
 from time import process_time
@@ -260,3 +261,16 @@ def test_many_stays_in_one_resource_are_counted_once() -> None:
         traffic.commit(Plan(robot.id, (Visit("hall", robot.release, None),)))
     assert list(traffic.windows("hall", 0)) == [Window(0, many)]
     assert process_time() - started < 2
+
+
+def test_moves_between_many_groups_take_no_memory_for_each_two() -> None:
+    groups = tuple(Group(f"{each}{number}", (each,)) for each in "ab" for number in range(500))
+    graph = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),), groups=groups)
+    traffic = Traffic(Instance(graph, ()))
+    tracemalloc.start()
+    for tick in range(4):
+        traffic.commit(Plan(tick, (Visit("a", 2 * tick, 2 * tick + 1), Visit("b", 2 * tick + 1, 2 * tick + 2))))
+    assert [traffic.is_exchange(tick, "b", "a") for tick in range(4)] == [False, True, False, True]
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 10_000_000

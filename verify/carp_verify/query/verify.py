@@ -21,7 +21,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
-from itertools import accumulate, pairwise, product, zip_longest
+from itertools import accumulate, pairwise, zip_longest
 
 from carp_spec import Instance, Plan, Refusal, ResourceId, Robot, Rule, Solution, Stop, Visit, has_ended
 from carp_spec.documents.query_certificates import QueryCertificateDocument, ServedLayer
@@ -49,7 +49,7 @@ class Traffic:
         self._capacities = [constraint.capacity for constraint in instance.graph.constraints]
         self._changes: dict[int, dict[int, int]] = defaultdict(lambda: {0: 0})
         self._counts: dict[int, tuple[list[int], list[int]]] = {}
-        self._moves: set[tuple[int, int, int]] = set()
+        self._entered: dict[tuple[int, int], set[ResourceId]] = defaultdict(set)
 
     def commit(self, plan: Plan) -> None:
         """Add the stays and the moves of a plan; in a group, visits one after the other take up its room once."""
@@ -62,8 +62,8 @@ class Traffic:
                 if visit.leave is not None:
                     self._change(constraint, visit.leave + gap, -1)
         for visit, following in pairwise(plan.visits):
-            for areas in product(graph.areas_of(visit.resource), graph.areas_of(following.resource)):
-                self._moves.add((following.enter, *areas))
+            for area in graph.areas_of(visit.resource):
+                self._entered[following.enter, area].add(following.resource)
 
     def _change(self, constraint: int, tick: int, robots: int) -> None:
         """Note that so many robots more are in what the constraint is on from the tick on."""
@@ -115,8 +115,8 @@ class Traffic:
     def is_exchange(self, tick: int, source: ResourceId, target: ResourceId) -> bool:
         """Whether a committed robot moves at the tick from an area of the target to one of the source."""
         graph = self.instance.graph
-        back = product(graph.areas_of(target), graph.areas_of(source))
-        return any((tick, *areas) in self._moves for areas in back)
+        places = {each for area in graph.areas_of(target) for each in self._entered.get((tick, area), ())}
+        return any(graph.are_close(each, source) for each in places)
 
     def allows(self, visits: Sequence[Visit]) -> bool:
         """Whether one more robot can make these visits."""
