@@ -1,5 +1,6 @@
 """Bounds over stops: what robots pay at least is that of a search tick by tick, and bounds hold and are verified."""
 
+import tracemalloc
 from collections.abc import Mapping
 from dataclasses import replace
 from heapq import heappop, heappush
@@ -7,6 +8,7 @@ from itertools import count
 
 import msgspec
 import pytest
+from tests.spec.making import row
 from tests.verify.bound.examples import SCALE, priced
 from tests.verify.bound.plain_search import least_cost_of
 from tests.verify.optimum.tiny import STOPPING, case
@@ -14,6 +16,7 @@ from tests.verify.optimum.tiny import STOPPING, case
 from carp_optimum.bound import lower_bound
 from carp_spec import Instance, Refusal, ResourceId, Robot
 from carp_spec.documents.bounds import BoundDocument
+from carp_spec.model import Stop
 from carp_verify.bound.tariff import Fees, Tariff
 from carp_verify.bound.verify import verify_bound
 from carp_verify.optimum.joint_search import WAITS, State, _Search, least_total_cost
@@ -110,3 +113,18 @@ def test_bounds_that_are_searched_for_are_verified_and_hold(part: int) -> None:
         above += len(certificate.cuts) > 0
     assert met > SIZE // 3
     assert above > 0
+
+
+def test_the_places_of_many_stops_are_not_made_before_they_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    many = 300
+    back_and_forth = tuple(Stop(place) for place in (many - 1, 0) * (many // 2))
+    lane = Instance(row(*(1,) * many), (Robot("r", 0, stops=back_and_forth),))
+    certificate = priced(lane, robots=(("r", 0),))
+    tracemalloc.start()
+    assert verify_bound(lane, certificate) == 0
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < many * many * 50
+    monkeypatch.setattr("carp_verify.bound.verify.LARGEST_TABLE", many * many - 1)
+    with pytest.raises(Refusal, match=r"the table of a robot's stops by resources would be 90000, and at most 89999"):
+        verify_bound(lane, certificate)

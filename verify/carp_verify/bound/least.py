@@ -18,12 +18,12 @@ gains by driving on if it has no deadline.
 
 from collections.abc import Mapping, Sequence
 from heapq import heappop, heappush
+from itertools import pairwise
 
 from carp_spec import Robot
 from carp_verify.bound.network import Network, distances, network_over
 from carp_verify.bound.rules import require, size_fits
 from carp_verify.bound.tariff import Fees, Tariff
-from carp_verify.routes import routes_of
 
 
 class Budget:
@@ -65,21 +65,29 @@ class RobotSearch:
     def _locate(self, network: Network) -> None:
         """Find the places where the plan begins, and that of the goal; of several stops, in a network of their own."""
         robot, index = self.robot, self.tariff.instance.graph.index
+        self.of_goals_alone = network
         self.network, self.pace = network, robot.pace
         self.starts: Sequence[int] = (index[robot.start],)
         self.there = index[robot.goal]
         self.is_there = len(robot.stops) == 1 and robot.start == robot.goal
         if len(robot.stops) > 1:
-            routes = routes_of(self.tariff.instance, robot, {})
-            self.network, self.pace = network_over(routes), 1
-            self.starts, self.there = [int(each) for each in routes.starts], int(routes.there)
+            self.network, self.starts, self.there = network_over(network, self.tariff.instance, robot)
+            self.pace = 1
 
     def has_way(self) -> bool:
         """Whether a way leads to the goal, past all stops."""
-        if self.is_there or self.network.leads(self.starts[0], self.there):
+        index = self.tariff.instance.graph.index
+        places = [index[self.robot.start], *(index[stop.resource] for stop in self.robot.stops)]
+        serves_at_start = len(self.robot.stops) > 1 and places[0] == places[1]
+        legs = dict.fromkeys(pairwise(places[1:] if serves_at_start else places))
+        return self.is_there or all(self._leads(*leg) for leg in legs)
+
+    def _leads(self, one: int, other: int) -> bool:
+        """Whether one or more moves lead from one resource to the other."""
+        network = self.of_goals_alone
+        if one != other and network.leads(one, other):
             return True
-        rests = distances(self.network, self.network.predecessors[self.there], self.network.predecessors)
-        return any(start in rests for start in self.starts)
+        return one in distances(network, network.predecessors[other], network.predecessors)
 
     def least_cost(self, claimed: int) -> int:
         """The least weighted cost plus prices of all plans of the robot alone, or the claimed cost if that is less."""

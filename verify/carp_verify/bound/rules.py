@@ -90,9 +90,10 @@ def is_rounded_up(bound: object, parts: int, scale: int) -> bool:
 
 @rule(
     "bound/size",
-    f"Robots by resources are at most {LARGEST_RESTS}; tables by resource and tick, or by a cut's robot and resource, "
-    f"have at most {LARGEST_TABLE} entries; the search for the robots' least costs takes at most {LARGEST_SEARCH} "
-    f"steps, and the formulas of all cuts and deadlines have at most {LARGEST_FORMULA} clauses together.",
+    f"Robots by resources are at most {LARGEST_RESTS}; tables by resource and tick, by a robot's stop and resource, or "
+    f"by a cut's robot and resource, have at most {LARGEST_TABLE} entries; the search for the robots' least costs "
+    f"takes at most {LARGEST_SEARCH} steps, and the formulas of all cuts and deadlines have at most {LARGEST_FORMULA} "
+    "clauses together.",
     DESIGN,
 )
 def size_fits(size: int, limit: int) -> bool:

@@ -69,6 +69,8 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
         raise Refusal("document", "$.robots", is_least.id, "it must name each robot of the instance once, in its order")
     table = _places(instance, list(instance.robot))
     require_size(table, LARGEST_RESTS, "$.robots", "the table of robots by resources")
+    largest = max((_places(instance, [robot]) for robot in instance.robot), default=0)
+    require_size(largest, LARGEST_TABLE, "$.robots", "the table of a robot's stops by resources")
     tariff = Tariff(instance, certificate)
     weights, proved, clauses = _weights(instance, certificate)
     worth = _worth(instance, certificate, clauses)
