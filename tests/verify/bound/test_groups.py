@@ -17,7 +17,7 @@ from tests.verify.bound.examples import (
     sight_certificate,
 )
 from tests.verify.bound.plain_search import least_cost_of
-from tests.verify.bound.tampered import TAMPERED
+from tests.verify.bound.tampered import NOT_WHOLE, TAMPERED
 from tests.verify.optimum.models import has_model
 
 from carp_optimum.bound import lower_bound
@@ -58,6 +58,15 @@ def test_tampered_cuts_deadlines_and_sights_are_refused(
         verify_bound(crossing(), tamper(honest()))
     rule = "bound/cut" if path.startswith("$.cuts") else "bound/deadline"
     assert (refused.value.path, refused.value.rule) == (path, rule)
+
+
+@pytest.mark.parametrize(("honest", "tamper", "path"), NOT_WHOLE)
+def test_numbers_of_cuts_deadlines_and_sights_are_whole(
+    honest: Callable[[], BoundDocument], tamper: Tamper, path: str
+) -> None:
+    with pytest.raises(Refusal) as refused:
+        verify_bound(crossing(), tamper(honest()))
+    assert (refused.value.path, refused.value.rule) == (path, "document/shape")
 
 
 LOST = ("r0", "lost")

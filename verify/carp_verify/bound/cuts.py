@@ -14,7 +14,6 @@ from dataclasses import replace
 
 from carp_spec import Instance, RobotId
 from carp_spec.documents.bounds import CutDocument, DeadlinesDocument
-from carp_spec.rule import is_whole
 from carp_verify.bound.rules import is_deadline
 from carp_verify.optimum.clauses import Formula
 from carp_verify.optimum.encoding import Encoding, Evidence, beat_formula
@@ -35,8 +34,6 @@ def formula_of(instance: Instance, cut: CutDocument, most: int) -> Formula:
     count = len(group.robots)
     if Encoding(group).wayless:
         raise NotRefutedError("a robot of the group has no way to its goal")
-    if not all(map(is_whole, (cut.least, *cut.horizons, *cut.order))):
-        raise NotRefutedError("its least total, horizons and order must be whole numbers")
     if len(cut.horizons) != count or sorted(cut.order) != list(range(count)):
         raise NotRefutedError(f"it must have a horizon of each of {count} robots, and an order of them")
     if any(not 0 <= horizon <= cut.least for horizon in cut.horizons):
