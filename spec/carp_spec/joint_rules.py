@@ -132,9 +132,14 @@ def opposite_moves(graph: ResourceGraph, moves: Collection[TimedMove]) -> Callab
         return lambda move: [back] if (back := (move[0], move[1][::-1])) in moves else []
     areas = {each: dict.fromkeys(graph.areas_of(each)) for each in graph.index}
     leaving: dict[tuple[int, int], list[TimedMove]] = defaultdict(list)
+    entering: dict[tuple[int, int], list[TimedMove]] = defaultdict(list)
     for move in moves:
-        for area in areas[move[1][0]]:
-            leaving[move[0], area].append(move)
+        for of_areas, resource in zip((leaving, entering), move[1], strict=True):
+            for area in areas[resource]:
+                of_areas[move[0], area].append(move)
+
+    def is_close(one: ResourceId, other: ResourceId) -> bool:
+        return not areas[one].keys().isdisjoint(areas[other])
 
     def first(one: ResourceId, other: ResourceId) -> int:
         """The place of the first of the areas of one resource that another one shares."""
@@ -142,8 +147,12 @@ def opposite_moves(graph: ResourceGraph, moves: Collection[TimedMove]) -> Callab
 
     def opposite(move: TimedMove) -> Collection[TimedMove]:
         tick, (source, target) = move
-        near = dict.fromkeys(each for area in areas[target] for each in leaving.get((tick, area), ()))
-        back = [each for each in near if not areas[source].keys().isdisjoint(areas[each[1][1]])]
+        sides = ((leaving, target), (entering, source))
+        of_areas, near_to = min(
+            sides, key=lambda side: sum(len(side[0].get((tick, area), ())) for area in areas[side[1]])
+        )
+        near = dict.fromkeys(each for area in areas[near_to] for each in of_areas.get((tick, area), ()))
+        back = [each for each in near if is_close(each[1][0], target) and is_close(each[1][1], source)]
         return sorted(back, key=lambda each: (first(target, each[1][0]), first(source, each[1][1])))
 
     return opposite

@@ -25,7 +25,7 @@ LATEST = 1 << 30
 """Ticks from here on are left to the rules. So are numbers of resources and edges that are larger."""
 LARGEST = 2**63 - 1
 """Of a whole number in an array."""
-MOST_WAYS = 30_000_000
+MOST_WAYS = 3_000_000
 """More ways from areas into areas are left to the rules, which take no memory for each."""
 
 

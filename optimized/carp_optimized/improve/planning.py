@@ -62,7 +62,9 @@ def plan_crowd(
     if not is_stepwise(instance) or not instance.robots:
         return None
     crowd = crowd_of(instance)
-    apart = _apart(crowd)
+    apart = _apart(crowd, timer)
+    if apart is None:
+        return None
     rows, crowd = np.flatnonzero(apart), only(crowd, apart)
     timer.visit = time_of_visit(instance, clock, finish)
     crowd, found, is_measured = _with_distances(crowd, timer)
@@ -108,16 +110,24 @@ def improve_crowd(
     return solution_along(instance, [instance.robots[row] for row in found], paths)
 
 
-def _apart(crowd: Crowd) -> Flags:
-    """Of each robot, whether none before it that has a way starts in its place, or parks in its goal."""
+def _apart(crowd: Crowd, timer: Clock) -> Flags | None:
+    """Of each robot, whether none before it that has a way starts in its place, or parks in its goal.
+
+    `None` if it cannot be told whether one has a way. Where there is no time to find out, each has one.
+    """
     ends = (crowd.start, crowd.goal) if crowd.parks else (crowd.start,)
     shared = np.any([np.bincount(each)[each] > 1 for each in ends], axis=0)
     has_way = np.ones(shared.size, np.bool_)
     if shared.any():
         sharing = only(crowd, shared)
-        rows = np.arange(sharing.start.size, dtype=np.int32)
-        measure(Native(sharing), rows, 0, rows.size)
-        has_way[shared] = ways_of(sharing) < FAR
+        native, rows = Native(sharing), np.arange(sharing.start.size, dtype=np.int32)
+        done = 0
+        while done < rows.size and timer.spent < LONG * (timer.seconds or inf):
+            measure(native, rows, done, min(done + PART, rows.size))
+            done += PART
+        if _may_be_further(first(sharing, done)):
+            return None
+        has_way[np.flatnonzero(shared)[:done]] = ways_of(first(sharing, done)) < FAR
     has_way[has_way] = are_apart(only(crowd, has_way))
     return has_way
 

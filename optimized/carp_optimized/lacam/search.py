@@ -35,7 +35,7 @@ ROOM = 256
 DEMANDED = 8
 """The demands of a configuration for which there is room at first, however many places it leads to."""
 MOST = 1 << 25
-"""Places in all configurations, or demands, beyond which there is no more room; twice as many take about a gigabyte."""
+"""Places in all configurations, or demands, beyond which there is no more room; twice as many take up to a gigabyte."""
 
 
 class Nodes(NamedTuple):

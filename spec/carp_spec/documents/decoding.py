@@ -10,6 +10,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from reprlib import repr as shown
 from typing import Annotated, Final, TypeAlias, TypeVar
 
 import msgspec
@@ -205,5 +206,5 @@ def write(document: object) -> bytes:
     try:
         return msgspec.json.encode(document) + b"\n"
     except UnicodeEncodeError as error:
-        message = f"all text must be such that UTF-8 can express it, not {error.object!r}"
+        message = f"all text must be such that UTF-8 can express it, not {shown(error.object)}"
         raise Refusal("document", "$", is_json.id, message) from None

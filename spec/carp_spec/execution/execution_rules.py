@@ -112,6 +112,8 @@ def exchange_order_is_kept(instance: Instance, solution: Solution, trace: Trace)
 
 def _areas(graph: ResourceGraph) -> Mapping[ResourceId, Sequence[int]]:
     """The areas of each resource: of those of the same resources the first, as the others say the same."""
+    if not graph.groups:
+        return {resource: (place,) for resource, place in graph.index.items()}
     first: dict[frozenset[ResourceId], int] = {}
     for each in filter(graph.is_area, range(len(graph.resources) + len(graph.groups))):
         first.setdefault(frozenset(graph.constraint(each).resources), each)

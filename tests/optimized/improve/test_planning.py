@@ -85,6 +85,9 @@ def test_a_way_longer_than_distances_are_measured_is_found_all_the_same() -> Non
     found = plan_within(instance, iterations=1)
     assert total_cost(instance, found.solution.plans) == length - 1
     assert improve_crowd(instance, found.solution, 1.0) is None
+    island = replace(graph, resources=(*graph.resources, Resource("island")))
+    lost = Instance(island, (*instance.robots, Robot("lost", 0, "island")))
+    assert plan_within(lost, iterations=1).solution.unplanned == ("lost",)
 
 
 @pytest.mark.parametrize(("name", "value"), [("JAMMED", 0), ("JAMMED", 10**6), ("LARGE", 0)])

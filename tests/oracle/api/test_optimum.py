@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from tests.oracle.running import HEAD_ON, Document, Outcome, Run, corridor, save
 
+from carp_verify.optimum.encoding import beat_formula, reach_formula
+
 UNSOLVABLE = corridor([{"id": "r1", "start": "a", "goal": "e"}, HEAD_ON])
 
 
@@ -43,12 +45,22 @@ def test_an_undecided_search_says_so_and_gives_its_bound(carproof: Run) -> None:
     assert document["lower"] > 1000
 
 
-def test_without_its_proof_an_optimum_is_not_written(carproof: Run, folder: Path) -> None:
-    (folder / "proof" / "manifest.json").mkdir(parents=True)
-    outcome = carproof("optimum town.json --proof proof -o best.json")
+def test_a_folder_that_cannot_be_written_is_refused_before_the_search(carproof: Run, folder: Path) -> None:
+    outcome = carproof("optimum town.json --proof town.json/proof -o best.json")
     assert (outcome.code, outcome.stdout) == (2, "")
-    assert outcome.stderr.startswith("Error: proof: it cannot be written: ")
+    assert outcome.stderr.startswith("Error: town.json/proof: it cannot be written: ")
     assert not (folder / "best.json").exists()
+
+
+def test_an_optimum_whose_proof_is_too_large_is_written_and_found(
+    carproof: Run, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for formula in (beat_formula, reach_formula):
+        monkeypatch.setattr(formula, "__defaults__", (3,))
+    outcome = carproof("optimum town.json --proof proof -o best.json")
+    assert outcome.code == 3
+    assert "found, not proved" in outcome.stdout
+    assert (folder / "best.json").exists()
 
 
 def test_a_proof_about_which_z3_does_not_answer_is_undecided(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:

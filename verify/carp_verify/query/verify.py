@@ -115,8 +115,10 @@ class Traffic:
     def is_exchange(self, tick: int, source: ResourceId, target: ResourceId) -> bool:
         """Whether a committed robot moves at the tick from an area of the target to one of the source."""
         graph = self.instance.graph
-        places = {each for area in graph.areas_of(target) for each in self._entered.get((tick, area), ())}
-        return any(graph.are_close(each, source) for each in places)
+        places = [self._entered.get((tick, area), set()) for area in graph.areas_of(target)]
+        if any(source in each for each in places) or source not in graph.groups_of:
+            return any(source in each for each in places)
+        return any(graph.are_close(each, source) for each in set().union(*places))
 
     def allows(self, visits: Sequence[Visit]) -> bool:
         """Whether one more robot can make these visits."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from carp_spec import Instance
+from carp_spec import Instance, Refusal
 from carp_spec.documents.decoding import write
 from carp_spec.documents.solutions import write_solution
 from carp_spec.inputs.options import MOST_PROCESSES, PROCESSES
@@ -68,9 +68,9 @@ def command(
     started = perf_counter()
     best = optimum(problem, time_left(context, limit, compiling), processes=processes)
     seconds = perf_counter() - started
-    is_proved = proof is not None and best.decided and _prove(proof, problem, best, limit)
     if output.file is not None and best.solution is not None:
         write_whole(output.file, write_solution(best.solution))
+    is_proved = proof is not None and best.decided and _prove(proof, problem, best, limit)
     if output.as_json:
         print_document(write(optimum_document(best, is_proved)))
     else:
@@ -107,6 +107,11 @@ def _prove(folder: Path, instance: Instance, best: "Optimum", limit: int) -> boo
         write_proof(instance, best, folder, limit)
     except TimeOver:
         remark(f"The proof takes longer than the limit of {limit} s; nothing was written.")
+        return False
+    except Refusal as refusal:
+        if refusal.kind != "limit":
+            raise
+        remark(f"The proof is too large to be checked: {refusal.message}; nothing was written.")
         return False
     except OSError as error:
         raise click.ClickException(f"{folder}: it cannot be written: {error.strerror}") from error

@@ -124,7 +124,9 @@ def warehouse(warehouse: Warehouse, fleet: Fleet, traits: Traits, headings: bool
 
 
 def _show(instance: Instance, headings: bool, output: Output) -> Answer:
-    try:
-        return show_instance(with_headings(instance) if headings else instance, output)
-    except Refusal as refusal:
-        raise Refusal("option", "$.headings", refusal.rule, refusal.message) from refusal
+    if headings:
+        try:
+            instance = with_headings(instance)
+        except Refusal as refusal:
+            raise Refusal("option", "$.headings", refusal.rule, refusal.message) from refusal
+    return show_instance(instance, output)

@@ -20,6 +20,8 @@ COLUMNS = ("robot", "tick", "resource")
 def read(text: str, instance: Instance, file: str) -> Trace:
     """Read a table of an instance whose ids print differently."""
     robots, resources = ids_by_text(instance, RIGHT_LOG)
+    if "" in resources:
+        raise RIGHT_LOG.refuse("INSTANCE", "no id of a resource may be empty, which says that a robot has left")
     visits: dict[RobotId, list[tuple[ResourceId | None, int]]] = {}
     now = 0
     for line, row in rows_of(text, file, RIGHT_LOG, COLUMNS):

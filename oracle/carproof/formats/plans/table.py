@@ -8,6 +8,7 @@ may be added.
 import csv
 import re
 from io import StringIO
+from itertools import chain
 
 from carp_spec import Instance, Plan, RobotId, Solution, Visit
 from carp_spec.documents.decoding import MOST_DIGITS
@@ -25,7 +26,7 @@ RIGHT_TABLE = Code(
     "adapter/csv",
     "A table of plans has the columns robot, resource, enter and leave. A row has a robot, a resource, the tick at "
     "which it enters, and that at which it leaves, or nothing if it stays for ever. Ids of the instance print "
-    "differently, none as nothing or with a carriage return.",
+    "differently, are not empty and have no carriage return.",
     DESIGN,
 )
 
@@ -51,7 +52,9 @@ def read(text: str, instance: Instance, file: str) -> Solution:
 def write(instance: Instance, solution: Solution) -> str:
     """Write a table; raises `Refusal` if the solution breaks a rule or the table cannot hold its ids."""
     require_lawful(instance, solution)
-    ids_by_text(instance, RIGHT_TABLE)  # which refuses ids that the table cannot hold
+    for name in chain(*ids_by_text(instance, RIGHT_TABLE)):
+        if not name or "\r" in name:
+            raise RIGHT_TABLE.refuse("INSTANCE", f"the id {name!r} must not be empty, and must have no carriage return")
     plans = {plan.robot: plan for plan in solution.plans}
     text = StringIO()
     rows = csv.writer(text, lineterminator="\n")

@@ -72,7 +72,7 @@ def settings_are_right(settings: OrderSettings) -> Found:
 
 RIGHT_NAMES = Code(
     "order/names",
-    "Ids of an instance of which orders are written print differently, none as nothing or with a carriage return.",
+    "Ids of an instance of which orders are written print differently.",
     "VDA 5050",
 )
 DEFAULTS = OrderSettings()
@@ -121,7 +121,7 @@ class _Writer:
     def __init__(self, instance: Instance, settings: OrderSettings) -> None:
         self.instance = instance
         self.settings = settings
-        ids_by_text(instance, RIGHT_NAMES)  # which refuses others
+        ids_by_text(instance, RIGHT_NAMES)  # which refuses two that print alike
         self.lanes = lanes_of(instance)
 
     def order(self, plan: Plan, now: int, then: int) -> Element | None:
