@@ -17,8 +17,8 @@ MOST_ORDERED = 9
     "optimum/size",
     f"The formula of an optimum has at most {LARGEST_FORMULA} clauses, a search over the states of all robots together "
     f"looks at no more than {LARGEST_SEARCH}, and at {LARGEST_STEPS} steps to them, each counted with the most "
-    f"constraints that a resource has, and all orders are tried of at most {MOST_ORDERED} robots. A proof is checked of "
-    f"at most {LARGEST_TABLE} pairs of a robot's stop and a resource: all this fits into memory and time.",
+    f"constraints that a resource has, and all orders are tried of at most {MOST_ORDERED} robots. A proof is checked "
+    f"of at most {LARGEST_TABLE} pairs of a robot's stop and a resource: all this fits into memory and time.",
     DESIGN,
 )
 def size_is_bounded(size: int, limit: int) -> bool:
