@@ -8,6 +8,7 @@ from itertools import count
 
 import msgspec
 import pytest
+from hypothesis import given
 from tests.spec.making import row
 from tests.verify.bound.examples import SCALE, priced
 from tests.verify.bound.plain_search import least_cost_of
@@ -17,14 +18,34 @@ from carp_optimum.bound import lower_bound
 from carp_spec import Instance, Refusal, ResourceId, Robot
 from carp_spec.documents.bounds import BoundDocument
 from carp_spec.model import Stop
+from carp_verify.bound.network import network_of, network_over
 from carp_verify.bound.tariff import Fees, Tariff
 from carp_verify.bound.verify import verify_bound
 from carp_verify.optimum.joint_search import WAITS, State, _Search, least_total_cost
+from carp_verify.routes import routes_of
 from carproof.testing.random_instances import Draw
+from carproof.testing.strategies import Sizes, instances
 
 PARTS, SIZE = 4, 40
 HORIZON = 14
 LAST = 90  # no cheapest plan of a tiny robot is longer
+
+
+@given(instances(Sizes(stops=3, service=3)))
+def test_the_places_of_a_robot_with_several_stops_are_the_stages_of_its_formula(instance: Instance) -> None:
+    for robot in instance.robots:
+        if len(robot.stops) > 1:
+            routes = routes_of(instance, robot, {})
+            over, starts, there = network_over(network_of(instance), instance, robot)
+            places = range(len(routes.stages))
+            assert len(over.resource) == len(over.duration) == len(places)
+            assert [over.resource[each] for each in places] == [routes.resource(each) for each in places]
+            assert [over.duration[each] for each in places] == [routes.duration[each] for each in places]
+            for mine, of_formula in ((over.successors, routes.successors), (over.predecessors, routes.predecessors)):
+                assert [sorted(mine[each]) for each in places] == [
+                    sorted(map(int, of_formula[each])) for each in places
+                ]
+            assert ([*starts], there) == ([*map(int, routes.starts)], int(routes.there))
 
 
 def drawn_prices(instance: Instance, draw: Draw) -> BoundDocument:
