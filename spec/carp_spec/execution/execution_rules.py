@@ -12,7 +12,7 @@ from carp_spec.check import MOST_LISTED
 from carp_spec.execution.dependencies import Node, Stay, dependencies, shortest_cycle, stays_by_constraint
 from carp_spec.execution.traces import Trace
 from carp_spec.joint_rules import misnamed
-from carp_spec.model import Instance, Plan, ResourceGraph, ResourceId, RobotId, Solution, Visit
+from carp_spec.model import Instance, Plan, RobotId, Solution, Visit
 from carp_spec.plan_rules import least_stays, plan_ends_at_goal, plan_starts_at_release
 from carp_spec.refusal import Refusal
 from carp_spec.rule import DESIGN, Breach, Rule, Violation, at_visit, interval, violation_rule
@@ -97,28 +97,17 @@ def order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Itera
     ADG,
 )
 def exchange_order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
-    areas, happened = _areas(instance.graph), trace.happened
+    areas, happened = instance.graph.areas_of, trace.happened
     leaving: dict[tuple[int, int], list[Stay]] = defaultdict(list)
     entering: dict[tuple[int, int], list[Stay]] = defaultdict(list)
     for constraint, stays in stays_by_constraint(instance.graph, solution.plans).items():
         for stay in stays if constraint < len(instance.graph.resources) else ():
-            here = areas[stay.visit.resource]
+            here = areas(stay.visit.resource)
             for ways, neighbour in ((leaving, stay.target), (entering, stay.source)):
-                for way in () if neighbour is None else product(here, areas[neighbour]):
+                for way in () if neighbour is None else product(here, areas(neighbour)):
                     ways[way].append(stay)
     found = (_too_early(stays, entering.get(way, ()), happened, 1, 1) for way, stays in leaving.items())
     yield from dict.fromkeys(breach for breaches in found for breach in breaches)
-
-
-def _areas(graph: ResourceGraph) -> Mapping[ResourceId, Sequence[int]]:
-    """The areas of each resource: of those of the same resources the first, as the others say the same."""
-    if not graph.groups:
-        return {resource: (place,) for resource, place in graph.index.items()}
-    first: dict[frozenset[ResourceId], int] = {}
-    for each in filter(graph.is_area, range(len(graph.resources) + len(graph.groups))):
-        first.setdefault(frozenset(graph.constraint(each).resources), each)
-    kept = {*first.values()}
-    return {resource: [each for each in graph.areas_of(resource) if each in kept] for resource in graph.index}
 
 
 def _too_early(

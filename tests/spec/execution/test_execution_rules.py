@@ -1,7 +1,6 @@
 """Traces and the dependency graph: what the rules of an execution promise, and how traces are read."""
 
 import random
-import tracemalloc
 from dataclasses import replace
 
 import networkx as nx
@@ -19,9 +18,9 @@ from tests.spec.making import (
     solution_of,
 )
 
-from carp_spec import Group, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit, violations_of
+from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Solution, Visit, violations_of
 from carp_spec.execution.dependencies import Dependency, dependencies, shortest_cycle
-from carp_spec.execution.execution_rules import exchange_order_is_kept, is_acyclic, trace_violations
+from carp_spec.execution.execution_rules import is_acyclic, trace_violations
 from carp_spec.execution.traces import Trace
 
 
@@ -101,17 +100,3 @@ def test_a_shortest_cycle_is_found_where_ways_join() -> None:
     ways = ("ab", "ac", "bd", "cd", "da")
     edges = tuple(Dependency("order", (way[0], 0), (way[1], 0), 0, "place") for way in ways)
     assert shortest_cycle(edges) == (edges[0], edges[2], edges[4])
-
-
-def test_groups_of_the_same_resources_take_no_memory_for_each_two() -> None:
-    groups = tuple(Group(f"{each}{number}", (each,)) for each in "ab" for number in range(500))
-    graph = ResourceGraph((Resource("a"), Resource("b")), (("a", "b"),), groups=groups)
-    plans = (plan_of("r", ("a", 0, 1), ("b", 1, 2)), plan_of("s", ("b", 3, 4), ("a", 4, 5)))
-    instance = Instance(graph, (Robot("r", "a", "b"), Robot("s", "b", "a", release=3)))
-    swapped = Trace(9, (plan_of("r", ("a", 5, 6), ("b", 6, 7)), plan_of("s", ("b", 3, 4), ("a", 4, 5))))
-    tracemalloc.start()
-    found = [*exchange_order_is_kept(instance, Solution.of(instance, plans), swapped)]
-    peak = tracemalloc.get_traced_memory()[1]
-    tracemalloc.stop()
-    assert [each.robots for each in found] == [("s",)]
-    assert peak < 5_000_000
