@@ -14,8 +14,9 @@ def draw_figures(stored: Path, folder: Path, ending: str = "svg", names: Contain
     """Draw the figures of these runs that are stored as `NAME.json`, from the rounded numbers; their files by name."""
     files = {}
     for each in EXPERIMENTS:
-        run, figures = stored / f"{each.name}.json", each.figures
-        if each.name in names and figures is not None and run.exists():
+        run = stored / f"{each.name}.json"
+        figures = each.figures if each.name in names and run.exists() else None
+        if figures is not None:
             for figure in of_summary(figures, read_run(run)):
                 files[figure.name] = folder / f"{figure.name}.{ending}"
                 line_figure(files[figure.name], figure)

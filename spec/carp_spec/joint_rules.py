@@ -138,9 +138,6 @@ def opposite_moves(graph: ResourceGraph, moves: Collection[TimedMove]) -> Callab
             for area in areas[resource]:
                 of_areas[move[0], area].append(move)
 
-    def is_close(one: ResourceId, other: ResourceId) -> bool:
-        return not areas[one].keys().isdisjoint(areas[other])
-
     def first(one: ResourceId, other: ResourceId) -> int:
         """The place of the first of the areas of one resource that another one shares."""
         return next(place for place, area in enumerate(areas[one]) if area in areas[other])
@@ -152,7 +149,7 @@ def opposite_moves(graph: ResourceGraph, moves: Collection[TimedMove]) -> Callab
             sides, key=lambda side: sum(len(side[0].get((tick, area), ())) for area in areas[side[1]])
         )
         near = dict.fromkeys(each for area in areas[near_to] for each in of_areas.get((tick, area), ()))
-        back = [each for each in near if is_close(each[1][0], target) and is_close(each[1][1], source)]
+        back = [each for each in near if graph.are_close(each[1][0], target) and graph.are_close(each[1][1], source)]
         return sorted(back, key=lambda each: (first(target, each[1][0]), first(source, each[1][1])))
 
     return opposite

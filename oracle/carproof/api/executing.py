@@ -101,10 +101,7 @@ def release(
     """
     limit = limit_of(states, seconds)
     require_each(beyond, RobotId, "$.beyond")
-    situation = Releasing(instance, solution, trace)
-    for robot in beyond:
-        require_robot(instance, robot, "$.beyond")
-    return situation.released([robot for robot in beyond if robot in situation.plans], *limit)
+    return Releasing(instance, solution, trace).released(beyond, *limit)
 
 
 def check_grants(

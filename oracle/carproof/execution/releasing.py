@@ -16,7 +16,7 @@ from carp_spec import Instance, Refusal, ResourceId, RobotId, Solution
 from carp_spec.execution.dependencies import Node, Stay, stays_by_constraint
 from carp_spec.execution.execution_rules import EXECUTION_RULES, TRACE_RULES, is_acyclic
 from carp_spec.execution.traces import Trace
-from carp_spec.requests import require_trace, sound_solution
+from carp_spec.requests import require_robot, require_trace, sound_solution
 from carp_spec.rule import is_between
 from carp_verify.bound.rules import ContradictionError
 from carp_verify.release.holding import State, Ways, places_of
@@ -219,7 +219,10 @@ class Releasing:
             yield from ((robot, other) for other in rest if other != robot and not rest[robot].isdisjoint(rest[other]))
 
     def released(self, beyond: Sequence[RobotId], states: float, until: float) -> Released:
-        """What the planned order grants, and for these robots what each may be granted alone."""
+        """What the planned order grants, and for these robots, if they have plans, what each may be granted alone."""
+        for robot in beyond:
+            require_robot(self.instance, robot, "$.beyond")
+        beyond = [robot for robot in beyond if robot in self.plans]
         in_order = tuple(self._grant(robot, place) for robot, place in self.in_order.items())
         parts = range(len(beyond), 0, -1)
         alone = (self._beyond(each, states, end_of_part(until, part)) for part, each in zip(parts, beyond, strict=True))

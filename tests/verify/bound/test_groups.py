@@ -109,13 +109,15 @@ def test_who_is_seen_several_times_pays_for_each_tick_of_its_stay_in_whatever_or
 
 
 def test_what_a_robot_pays_is_found_in_a_time_that_hardly_grows_with_its_deadlines() -> None:
-    many = 50_000
-    fees = Fees([(tick, 1) for tick in range(many)], [(tick, {"a"}, 1) for tick in range(many)])
-    started = process_time()
-    for tick in range(2000):
-        assert fees.at_arrival(tick) == many - tick
-        assert fees.on_the_way("a", tick, many) == many - tick
-    assert process_time() - started < 2
+    def seconds(many: int) -> float:
+        fees = Fees([(tick, 1) for tick in range(many)], [(tick, {"a"}, 1) for tick in range(many)])
+        started = process_time()
+        for tick in range(500):
+            assert fees.at_arrival(tick) == many - tick
+            assert fees.on_the_way("a", tick, many) == many - tick
+        return process_time() - started
+
+    assert min(seconds(50_000) for _ in range(3)) < 10 * min(seconds(500) for _ in range(3))
 
 
 @pytest.mark.parametrize("honest", [deadline_certificate, sight_certificate])

@@ -252,15 +252,17 @@ def test_where_following_is_forbidden_a_plan_that_keeps_no_free_tick_is_no_rival
 
 
 def test_many_stays_in_one_resource_are_counted_once() -> None:
-    many = 20_000
-    hall = ResourceGraph((Resource("hall", many),), ())
-    robots = tuple(Robot(number, "hall", "hall", release=many - number) for number in range(many))
-    traffic = Traffic(Instance(hall, robots, "park"))
-    started = process_time()
-    for robot in robots:
-        traffic.commit(Plan(robot.id, (Visit("hall", robot.release, None),)))
-    assert list(traffic.windows("hall", 0)) == [Window(0, many)]
-    assert process_time() - started < 2
+    def seconds(many: int) -> float:
+        hall = ResourceGraph((Resource("hall", many),), ())
+        robots = tuple(Robot(number, "hall", "hall", release=many - number) for number in range(many))
+        traffic = Traffic(Instance(hall, robots, "park"))
+        started = process_time()
+        for robot in robots:
+            traffic.commit(Plan(robot.id, (Visit("hall", robot.release, None),)))
+        assert list(traffic.windows("hall", 0)) == [Window(0, many)]
+        return process_time() - started
+
+    assert min(seconds(16_000) for _ in range(3)) < 10 * min(seconds(2_000) for _ in range(3))
 
 
 def test_moves_between_many_groups_take_no_memory_for_each_two() -> None:

@@ -32,7 +32,6 @@ from carp_spec import Instance, Refusal, RobotId
 from carp_spec.documents.bounds import BoundDocument, CutDocument, DeadlinesDocument
 from carp_spec.documents.instances import digest
 from carp_spec.inputs.values import require_instance
-from carp_spec.rule import is_whole
 from carp_spec.shapes import require_shape
 from carp_verify.bound.least import Budget, RobotSearch
 from carp_verify.bound.network import network_of
@@ -87,13 +86,13 @@ def verify_bound(instance: Instance, certificate: BoundDocument) -> int:
     return certificate.bound
 
 
-def _require_claim(search: RobotSearch, claimed: object, path: str) -> None:
+def _require_claim(search: RobotSearch, claimed: int | None, path: str) -> None:
     """Raise `Refusal` unless the claim is no more than the robot's least cost, and null just where there is none."""
     robot = search.robot.id
-    least = search.least_cost(claimed if is_whole(claimed) else 0) if search.has_way() else None
+    least = search.least_cost(claimed or 0) if search.has_way() else None
     message = f"robot {robot} can have no more than {least}, the least of its cost and prices, not {claimed!r}"
-    if not is_whole(claimed):
-        message = f"robot {robot} must have a whole number, or null where no way leads to its goal, and has {claimed!r}"
+    if claimed is None:
+        message = f"robot {robot} must have a whole number, as a way leads to its goal, and has null"
     require(is_least, is_least(claimed, least), path, message)
 
 

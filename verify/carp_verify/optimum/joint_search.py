@@ -45,10 +45,7 @@ class _Search:
         self.instance = instance
         self.constraints = instance.graph.constraints
         self.last_release = max((robot.release for robot in instance.robots), default=0)
-        graph = instance.graph
-        blocks = {number for number, group in enumerate(graph.groups) if group.capacity == 1}
-        self.blocks = {each: blocks & {*graph.groups_of.get(each, ())} for each in graph.index}
-        self.width = max((len(graph.constraints_of(each)) for each in graph.index), default=1)
+        self.width = max((len(instance.graph.constraints_of(each)) for each in instance.graph.index), default=1)
         self.steps = 0
 
     def entering(self, robot: Robot, resource: ResourceId, served: int) -> Iterator[State]:
@@ -98,7 +95,7 @@ class _Search:
             if old.resource is not None and new.resource is not None and old.resource != new.resource
         ]
         return not any(
-            self.are_close(source, to) and self.are_close(target, away)
+            self.instance.graph.are_close(source, to) and self.instance.graph.are_close(target, away)
             for (source, target), (away, to) in combinations(moves, 2)
         )
 
@@ -107,10 +104,6 @@ class _Search:
         states = (after, before) if self.instance.following == "forbidden" else (after,)
         graph = self.instance.graph
         return {each for state in states if state.resource is not None for each in graph.constraints_of(state.resource)}
-
-    def are_close(self, one: ResourceId, other: ResourceId) -> bool:
-        """Whether two resources are the same or lie in one group of capacity 1."""
-        return one == other or not self.blocks[one].isdisjoint(self.blocks[other])
 
     def following(self, tick: int, before: Joint) -> Iterator[Joint]:
         """The joint states at the tick after one at the tick before; all steps to them are counted before the first."""

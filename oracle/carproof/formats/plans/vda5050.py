@@ -70,11 +70,7 @@ def settings_are_right(settings: OrderSettings) -> Found:
             yield f"$.{name}", f"it must be text, not {given[name]!r}"
 
 
-RIGHT_NAMES = Code(
-    "order/names",
-    "Ids of an instance of which orders are written print differently.",
-    "VDA 5050",
-)
+RIGHT_NAMES = Code("order/names", "Ids of an instance of which orders are written print differently.", "VDA 5050")
 DEFAULTS = OrderSettings()
 
 

@@ -193,11 +193,7 @@ def release(
     For the robots of `beyond`, grants beyond the planned order are searched.
     """
     limit = limit_of(states, seconds)
-    situation = _situation(instance, solution, trace)
-    for robot in beyond:
-        require_robot(instance, robot, "$.beyond")
-    planned = [robot for robot in beyond if robot in situation.plans]
-    return released_document(situation.released(planned, *limit))
+    return released_document(_situation(instance, solution, trace).released(beyond, *limit))
 
 
 def check_grants(
