@@ -57,8 +57,8 @@ class Extent:
         instance, answer = outcome.case.instance, outcome.answer
         resources, robots = instance.graph.resources, instance.robots
         self.robots, self.resources = max((self.robots, self.resources), (len(robots), len(resources)))
-        self.capacity = max(self.capacity, *(resource.capacity for resource in resources))
-        self.duration = max(self.duration, *(resource.duration for resource in resources))
+        self.capacity = max([self.capacity, *(resource.capacity for resource in resources)])
+        self.duration = max([self.duration, *(resource.duration for resource in resources)])
         self.pace = max([self.pace, *(robot.pace for robot in robots)])
         if isinstance(answer, OptimumDocument) and answer.solution is not None:
             answer = solution_of(answer.solution)

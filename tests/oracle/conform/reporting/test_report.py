@@ -80,6 +80,12 @@ def test_answers_to_the_ops_of_the_level_are_counted() -> None:
     assert report(Level.CONTEXT_OPTIMAL, *outcomes).tested == 3
 
 
+def test_a_right_answer_without_resources_counts() -> None:
+    """A failure may shrink to nothing, and is asked again once the program is mended."""
+    nothing = Case("saved", "one", "check", row([], cells=""))
+    assert report(Level.SOUND, Outcome(nothing, None, NOBODY, effort=Effort.TRIED)).outcomes
+
+
 def test_an_interruption_leaves_undecided_what_is_not_wrong() -> None:
     for outcomes, conforms in (((tried(),), None), ((skipped("smoke"),), None), ((failed("smoke"),), False)):
         made = report(Level.SOUND, *outcomes)
