@@ -8,7 +8,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import count, takewhile
 
-from carp_spec import Instance, Plan, Robot, RobotId, Solution, Visit, plan_cost
+from msgspec import structs
+
+from carp_spec import Group, Instance, Plan, Resource, Robot, RobotId, Solution, Visit, plan_cost
 from carp_spec.execution.dependencies import dependencies, shortest_cycle
 from carp_spec.windows import occupancy, stays_within
 from carproof.engines import Engine
@@ -67,18 +69,21 @@ def query_kept_out(
 ) -> Plan | None:
     """The earliest plan of the robot beside the others that makes none of these visits.
 
-    Each visit is filled with as many extra robots as have room; they exist only in the instance of the query, where no
-    resource has room for more than all other robots.
+    Each visit is to a place that has in the instance of the query a group with one outside, for as many extra robots
+    as have room. They are in no other group of the place, which has room for no more than all other robots.
     """
     graph, most = instance.graph, len(instance.robots)
-    if any(graph.resource[block.resource].capacity > most for block in blocks):
-        resources = tuple(replace(each, capacity=min(each.capacity, most)) for each in graph.resources)
-        graph = replace(graph, resources=resources)
-    guards: list[Plan] = []
-    names = (number for number in count(len(instance.robots)) if number not in instance.robot)
+    used = {*graph.index, *(group.id for group in graph.groups), *instance.robot}
+    names = (number for number in count() if number not in used)
+    outside, groups, guards = list[Resource](), list[Group](), list[Plan]()
     for block in blocks:
+        capacity = min(graph.resource[block.resource].capacity, most)
         here = occupancy(stays_within(others, {block.resource}), block.enter)
-        guards += [Plan(next(names), (block,)) for _ in range(graph.resource[block.resource].capacity - here)]
+        outside.append(Resource(next(names), capacity))
+        groups.append(Group(next(names), (block.resource, outside[-1].id), capacity))
+        visit = structs.replace(block, resource=outside[-1].id)
+        guards += [Plan(next(names), (visit,)) for _ in range(capacity - here)]
     standing = (Robot(guard.robot, guard.visits[0].resource, guard.visits[0].resource) for guard in guards)
-    robots = (*instance.robots, *standing)
-    return engine.find(replace(instance, graph=graph, robots=robots), [*others, *guards], robot)
+    extended = replace(graph, resources=(*graph.resources, *outside), groups=(*graph.groups, *groups))
+    beside = replace(instance, graph=extended, robots=(*instance.robots, *standing))
+    return engine.find(beside, [*others, *guards], robot)

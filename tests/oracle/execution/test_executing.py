@@ -130,6 +130,13 @@ def test_a_rotation_over_a_place_with_room_for_any_number_is_untangled() -> None
         assert (found.extra, found.rotation) == (1, ())
 
 
+def test_a_rotation_in_a_zone_that_it_fills_is_untangled() -> None:
+    instance, turning = read_instance(line(**moves(RING))), read_solution(line(**steps(RING)))
+    zone = (carproof.Group("zone", tuple("abcde"), len(RING)),)
+    found = carproof.untangle(replace(instance, graph=replace(instance.graph, groups=zone)), turning)
+    assert (found.extra, found.rotation) == (2, ())
+
+
 def test_a_rotation_that_there_is_no_time_for_stays(carproof: Run) -> None:
     assert carproof("execution untangle ring.json turning.json --seconds 0").code == 2
     for seconds, ticks in ((1e-9, 0), (60, 2)):
