@@ -333,8 +333,7 @@ class PlannedFleet:
 
     def record(self, plan: Plan) -> int:
         """Take up a plan without reserving it; the number by which it is known."""
-        for position, visit in enumerate(plan.visits):
-            limits.refuse_tick(f"$.plans[{self._index[plan.robot]}].visits[{position}]", visit.leave or visit.enter)
+        limits.refuse_tick("$.plans", plan.visits[-1].leave or plan.visits[-1].enter)
         record = self.call(lambda: write_plan(self.native, self.instance, self._index[plan.robot], plan))
         self._plans[record] = plan
         return record

@@ -210,8 +210,8 @@ BEGUN = {**UNDER_WAY, "now": 0, "plans": UNDER_WAY["plans"][:1]}
         ("polish", {**ALONE, "iterations": 1, "now": 2**40}, "$.now"),
         ("give-way", {**ALONE, "robot": "r1", "now": 2**40}, "$.now"),
         ("retime", {**ALONE, "trace": {**BEGUN, "now": 2**40}}, "$.trace.now"),
-        ("polish", {**LONG, "iterations": 1}, "$.solution.plans[0].visits[0]"),
-        ("audit", LONG, "$.solution.plans[0].visits[0]"),
+        ("polish", {**LONG, "iterations": 1}, "$.solution.plans"),
+        ("audit", LONG, "$.solution.plans"),
         ("retime", {**LONG, "trace": BEGUN}, "$.solution.plans"),
     ],
 )
