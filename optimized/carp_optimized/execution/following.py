@@ -126,7 +126,7 @@ def held_up(instance: Instance, solution: Solution, trace: Trace) -> Solution:
     Raises `Refusal` for numbers that are too large.
     """
     latest = max((visit.enter for plan in trace.plans for visit in plan.visits), default=0)
-    refuse_tick("$.trace.plans", latest)
+    refuse_tick("$.plans", latest)
     table = timetable(instance, solution)
     told = {plan.robot: plan for plan in trace.plans}
     least = table.enter.copy()

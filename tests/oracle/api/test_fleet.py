@@ -414,6 +414,8 @@ def test_what_is_refused_changes_nothing(monkeypatch: pytest.MonkeyPatch, name: 
     assert refusal.value.rule == name.partition(" ")[0]
     if name == "limit/ticks service":
         assert refusal.value.path == "$.stops"
+    if name == "limit/ticks trace":
+        assert refusal.value.path == "$.plans"
     assert_alike(fleet, twin)
 
 
