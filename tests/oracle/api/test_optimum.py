@@ -45,10 +45,12 @@ def test_an_undecided_search_says_so_and_gives_its_bound(carproof: Run) -> None:
     assert document["lower"] > 1000
 
 
-def test_a_folder_that_cannot_be_written_is_refused_before_the_search(carproof: Run, folder: Path) -> None:
-    outcome = carproof("optimum town.json --proof town.json/proof -o best.json")
+@pytest.mark.parametrize("proof", ["town.json/proof", "nowhere"])
+def test_a_folder_that_cannot_be_written_is_refused_before_the_search(carproof: Run, folder: Path, proof: str) -> None:
+    (folder / "nowhere").symlink_to("gone")
+    outcome = carproof(f"optimum town.json --proof {proof} -o best.json")
     assert (outcome.code, outcome.stdout) == (2, "")
-    assert outcome.stderr.startswith("Error: town.json/proof: it cannot be written: ")
+    assert outcome.stderr.startswith(f"Error: {proof}: it cannot be written: ")
     assert not (folder / "best.json").exists()
 
 

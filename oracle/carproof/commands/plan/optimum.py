@@ -1,5 +1,6 @@
 """`carproof optimum`: the least total cost of plans for all robots, with a proof if asked for."""
 
+import os
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
@@ -91,7 +92,7 @@ def command(
 def _writable(folder: Path) -> Path:
     """The folder of the proof; one that can be neither made nor written into is refused before the search."""
     try:
-        nearest = next(each for each in (folder, *folder.absolute().parents) if each.exists())
+        nearest = next(each for each in (folder, *folder.absolute().parents) if os.path.lexists(each))
         TemporaryDirectory(dir=nearest).cleanup()
     except OSError as error:
         raise click.ClickException(f"{folder}: it cannot be written: {error.strerror}") from error
