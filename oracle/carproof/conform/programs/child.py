@@ -194,7 +194,9 @@ class Child:
     def end(self, seconds: float) -> None:
         """Wait for the process to end by itself; raises `Fault` if it does not, or not with 0."""
         self._stdin.close()
-        code = exit_code(self._process, seconds)
+        deadline = monotonic() + seconds
+        while (code := exit_code(self._process, _NAP)) is None and monotonic() < deadline:
+            self._keep_all_errors()
         if code is None:
             message = f"it runs on, {seconds:g} s after it was asked to stop"
             raise self._fault(Category.TIMEOUT, IN_TIME.id, message)
@@ -208,9 +210,12 @@ class Child:
         cut = f", after {len(self._output)} bytes of an answer" if self._output else ""
         return self._fault(Category.CRASH, is_alive.id, f"{how} before it answered{cut}")
 
+    def _keep_all_errors(self) -> None:
+        """Read what there is on standard error."""
+        reads = 0 if self._stderr.closed else _KEPT_STDERR
+        while reads and self._keep_errors(None):
+            reads -= 1
+
     def _fault(self, category: Category, rule: str, message: str) -> Fault:
-        if not self._stderr.closed:
-            reads = _KEPT_STDERR
-            while reads and self._keep_errors(None):
-                reads -= 1
+        self._keep_all_errors()
         return Fault(Finding(category, rule, message, self.stderr))

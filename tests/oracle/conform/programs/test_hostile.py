@@ -128,6 +128,10 @@ def test_a_program_must_stop_when_it_is_asked_to(how: str, category: Category) -
     assert [fault.category for fault in run(how, seconds=2).faults] == [category]
 
 
+def test_a_program_may_write_much_on_standard_error_before_it_ends() -> None:
+    assert run("counts at the end", seconds=2).faults == []
+
+
 def test_a_program_that_was_killed_is_started_again_to_be_stopped() -> None:
     program = Program([*HOSTILE, "stops badly"], LIMITS)
     program.start()
