@@ -107,12 +107,18 @@ class FailureSearch:
         return True
 
     def _confirm(self) -> None:
-        """Ask the smallest case once more, with the full time limit; what took too long must do so again."""
-        assert self.best is not None  # noqa: S101 - a promise of ours
+        """Ask the smallest case once more, with the full time limit; what took too long must do so again.
+
+        If it does not, the first takes its place, and is asked once more.
+        """
+        assert self.best is not None and self._first is not None  # noqa: S101, PT018 - promises of ours
         again = self._ask(self.best.case, None)
-        alike = again.finding is not None and again.finding.key == self.best.fault.key
-        if self.best.fault.category == Category.TIMEOUT:
-            self.best = again if alike else self._first
-        else:
-            self.repeats = alike
-        self.minimal = self.minimal and alike
+        self.repeats = again.finding is not None and again.finding.key == self.best.fault.key
+        self.minimal = self.minimal and self.repeats
+        if self.best.fault.category != Category.TIMEOUT:
+            return
+        if self.repeats:
+            self.best = again
+        elif self.best is not self._first:
+            self.best = self._first
+            self._confirm()

@@ -95,10 +95,11 @@ def test_smaller_failures_are_looked_for_until_the_time_is_over(monkeypatch: pyt
     assert asked.limits.count(None) == len(asked.limits) - 3
 
 
-def test_a_failure_that_does_not_come_again_stays_and_nothing_is_said_of_its_size() -> None:
-    asked = Asked(lambda robots: JUMPS if asked.robots.count(robots) == 1 and len(asked.robots) == 4 else None)
+@pytest.mark.parametrize("finding", [JUMPS, NO_ANSWER])
+def test_a_failure_that_does_not_come_again_stays_and_nothing_is_said_of_its_size(finding: Finding) -> None:
+    asked = Asked(lambda robots: finding if asked.robots.count(robots) == 1 and len(asked.robots) == 4 else None)
     made = search(asked)
-    assert best(made) == (asked.robots[3], JUMPS)
+    assert best(made) == (asked.robots[3], finding)
     assert (made.minimal, made.repeats) == (False, False)
 
 
