@@ -8,7 +8,7 @@ import msgspec
 
 from carp_spec import Refusal, Solution
 from carp_spec.documents.bounds import BoundDocument
-from carp_spec.documents.decoding import UNREADABLE, is_json, uncapitalized
+from carp_spec.documents.decoding import UNREADABLE, require_json, uncapitalized
 from carp_spec.documents.verdicts import VerdictDocument
 from carp_spec.execution.traces import Trace
 from carproof.conform.cases import Case
@@ -73,10 +73,12 @@ def shown(data: bytes) -> str:
 
 def result_of(line: bytes, id: object) -> msgspec.Raw | Skipped:
     """The result in a response to the request with the id."""
-    if not is_json(line):
-        raise protocol_error(is_response.id, f"the response must obey {is_json.id}: {shown(line)}")
     try:
+        require_json(line)
         response = msgspec.json.decode(line, type=_Response)
+    except Refusal as error:
+        message = f"the response must obey {error.rule}: {error.message}, in {shown(line)}"
+        raise protocol_error(is_response.id, message) from error
     except (*UNREADABLE, ValueError) as error:
         reason = str(error).replace("`", "")
         message = f"the response is not as it must be: {uncapitalized(reason)}, in {shown(line)}"

@@ -58,6 +58,14 @@ def test_any_other_response_is_refused(line: bytes) -> None:
     assert (finding.category, finding.rule) == (Category.PROTOCOL_ERROR, "program/response")
 
 
+@pytest.mark.parametrize(
+    ("end", "told"), [(b'"a": NaN}', "at line 1, column 331"), (b'"id": 1}', "has the name 'id' 2 times")]
+)
+def test_a_long_response_that_is_no_json_is_told_where_and_why(end: bytes, told: str) -> None:
+    finding = finding_of(result_of, b'{"id": 1, "skipped": "' + b"x" * 300 + b'", ' + end, 1)
+    assert told in finding.message
+
+
 @pytest.mark.parametrize("error", [b'""', b'{"message": "no"}'])
 def test_an_error_is_a_wrong_answer(error: bytes) -> None:
     finding = finding_of(result_of, b'{"id": 1, "error": ' + error + b"}", 1)
