@@ -167,7 +167,7 @@ ADDITIONS: Sequence[Row] = (
     (ADD_SLOW, right(ADD_SLOW), {}),
     (ADD, ADDED, {}),
     (ADD, committed(BEHIND, first=FIRST_GOES), {Level.COMPLETE_IN_CONTEXT: "query/complete"}),
-    (ADD, committed(BEHIND, first=WAITS, new=BEHIND_GOES), {Level.COMPLETE_IN_CONTEXT: "neighbourhood/baseline"}),
+    (ADD, committed(BEHIND, first=WAITS, new=BEHIND_GOES), {Level.CONTEXT_OPTIMAL: "neighbourhood/baseline"}),
     (ADD_ANYHOW, committed(BEHIND, first=WAITS, new=BEHIND_GOES), {Level.EXACT: "query/ties"}),
     (ADD_ANYHOW, committed(BEHIND, first=FIRST_GOES), {Level.EXACT: "query/ties"}),
     (ADD, committed(BEHIND, new=BEHIND_GOES), {Level.SOUND: "fleet/history"}),
