@@ -49,7 +49,7 @@ class FailureSearch:
 
     def run(self, cases: "SearchStrategy[Case]", examples: int, seed: int) -> None:
         """Draw at most `examples` cases."""
-        from hypothesis import Phase, find, settings  # noqa: PLC0415 - loaded only where used
+        from hypothesis import Phase, Verbosity, find, settings  # noqa: PLC0415 - loaded only where used
         from hypothesis.errors import NoSuchExample, Unsatisfiable  # noqa: PLC0415
 
         limits = settings(
@@ -57,6 +57,7 @@ class FailureSearch:
             deadline=None,
             database=None,
             phases=(Phase.generate, Phase.shrink),
+            verbosity=Verbosity.quiet,
         )
         try:
             find(cases, self._is_failure, settings=limits, random=Random(seed))  # noqa: S311 - cases, no secrets

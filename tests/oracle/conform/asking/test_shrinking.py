@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 from hypothesis import strategies as st
+from hypothesis.internal.conjecture import engine
 
 from carp_spec import Robot, Solution
 from carproof.conform import shrinking
@@ -93,6 +94,12 @@ def test_smaller_failures_are_looked_for_until_the_time_is_over(monkeypatch: pyt
     monkeypatch.setattr(shrinking, "monotonic", lambda: 100.0 + 10 * len(asked.robots))
     search(asked, shrink_seconds=25.0)
     assert asked.limits.count(None) == len(asked.limits) - 3
+
+
+def test_hypothesis_prints_nothing(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(engine, "MAX_SHRINKING_SECONDS", 0)
+    assert best(search(Asked(lambda robots: JUMPS if robots >= 3 else None))) == (3, JUMPS)
+    assert capsys.readouterr() == ("", "")
 
 
 @pytest.mark.parametrize("finding", [JUMPS, NO_ANSWER])
