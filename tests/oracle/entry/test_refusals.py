@@ -257,6 +257,7 @@ REFUSED = (
     ("conform --executor --level complete -- cat", "Of an executor --level must be one of sound, exact."),
     ("conform --executor --kernel -- cat", "--executor can be combined with neither --one-shot nor --kernel."),
     ("conform --executor --one-shot -- cat", "--executor can be combined with neither --one-shot nor --kernel."),
+    ("conform --timeout inf -- cat", "inf is not in the range 0<x<=86400."),
     # sizes and times
     ("convert plant.xml --tick 0s", "--tick: it must be a number above 0"),
     ("convert plant.xml --speed 3kn", "--speed: it must be a number above 0"),

@@ -76,7 +76,7 @@ _LEVELS = "\n".join(
 )
 @click.option(
     "--timeout",
-    type=click.FloatRange(0, min_open=True),
+    type=click.FloatRange(0, 86_400, min_open=True),
     default=5.0,
     help="Seconds for an answer; 5 times that at a start.",
 )
