@@ -2,8 +2,9 @@
 
 import signal
 import subprocess
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory, TemporaryFile
 from typing import BinaryIO
@@ -60,8 +61,8 @@ class OneShot(Subject):
     def start(self) -> None:
         """Recognise the format that the program writes; raises `Refusal` if it must be named."""
         if self.is_classical and self._format is None:
-            with suppress(Fault), _folder() as folder:
-                self._format = self._format_of(self._written(PROBE, Path(folder), self._limits.seconds))
+            with suppress(Fault), _folder() as folder, TemporaryFile() as errors:
+                self._format = self._format_of(self._written(PROBE, Path(folder), errors, self._limits.seconds))
 
     def _format_of(self, written: bytes) -> str | None:
         """The format of the probe's answer; `None` if it fits none, which the cases will show."""
@@ -76,32 +77,38 @@ class OneShot(Subject):
         """Run the program on the case's instance."""
         if self.is_classical and not is_classical(case.instance):
             return Skipped("it plans classical grids", asked=False)
-        with _folder() as folder:
-            written = self._written(case.instance, Path(folder), seconds or self._limits.seconds)
-        return self._read(written, case.instance) if written else Solution((), (), tuple(case.instance.robot))
+        with _folder() as folder, TemporaryFile() as errors, self._explained(errors):
+            written = self._written(case.instance, Path(folder), errors, seconds or self._limits.seconds)
+            return self._read(written, case.instance) if written else Solution((), (), tuple(case.instance.robot))
 
-    def _written(self, instance: Instance, folder: Path, seconds: float) -> bytes:
+    @contextmanager
+    def _explained(self, errors: BinaryIO) -> Iterator[None]:
+        """A fault has the end of standard error."""
+        try:
+            yield
+        except Fault as fault:
+            ending_of_errors = self._beginning(errors)[-_KEPT_STDERR:].decode("utf-8", "backslashreplace")
+            raise Fault(replace(fault.finding, stderr=ending_of_errors)) from fault
+
+    def _written(self, instance: Instance, folder: Path, errors: BinaryIO, seconds: float) -> bytes:
         """Run the program on an instance, and return its answer; only a classical one may be empty."""
         solution = folder / "solution"
         command = self._command(instance, folder, solution)
-        with TemporaryFile() as output, TemporaryFile() as errors:
+        with TemporaryFile() as output:
             code = self._wait(command, output.fileno(), errors.fileno(), seconds)
-            printed, complained = self._beginning(output), self._beginning(errors)
-        ending_of_errors = complained[-_KEPT_STDERR:].decode("utf-8", "backslashreplace")
+            printed = self._beginning(output)
         if code is None:
             message = f"no answer within {self._limits.shown(seconds)}"
-            raise Fault(Finding(Category.TIMEOUT, IN_TIME.id, message, ending_of_errors))
-        written = self._solution(solution, ending_of_errors) if names(self._template, SOLUTION) else printed
+            raise Fault(Finding(Category.TIMEOUT, IN_TIME.id, message))
+        written = self._solution(solution) if names(self._template, SOLUTION) else printed
         if code in (-signal.SIGXFSZ, SHELL + signal.SIGXFSZ):
             message = f"it wrote a file, or output, of more than {self._limits.output} bytes, which is the most it may"
-            raise Fault(Finding(Category.PROTOCOL_ERROR, RIGHT_RESULT.id, message, ending_of_errors))
+            raise protocol_error(RIGHT_RESULT.id, message)
         if code not in (0, 1) or (code == 1 and not written):
-            raise Fault(Finding(Category.CRASH, is_alive.id, ending(code), ending_of_errors))
+            raise Fault(Finding(Category.CRASH, is_alive.id, ending(code)))
         if not (written or self.is_classical) or len(written) > self._limits.output:
             much = "nothing" if not written else f"more than {self._limits.output} bytes"
-            raise Fault(
-                Finding(Category.PROTOCOL_ERROR, RIGHT_RESULT.id, f"it wrote {much} as its answer", ending_of_errors)
-            )
+            raise protocol_error(RIGHT_RESULT.id, f"it wrote {much} as its answer")
         return written
 
     def _command(self, instance: Instance, folder: Path, solution: Path) -> list[str]:
@@ -149,7 +156,7 @@ class OneShot(Subject):
         file.seek(0)
         return file.read(self._limits.output + 1)
 
-    def _solution(self, solution: Path, errors: str) -> bytes:
+    def _solution(self, solution: Path) -> bytes:
         """The file that the program wrote; nothing if it wrote none."""
         try:
             return plain_file(solution, self._limits.output)
@@ -157,4 +164,4 @@ class OneShot(Subject):
             return b""
         except OSError as error:
             message = f"its answer must be a plain file that can be read: {error.strerror}"
-            raise Fault(Finding(Category.PROTOCOL_ERROR, RIGHT_RESULT.id, message, errors)) from error
+            raise protocol_error(RIGHT_RESULT.id, message) from error

@@ -149,6 +149,12 @@ def test_a_program_that_writes_more_than_it_may_is_told_so() -> None:
         program.ask(smoke)
 
 
+def test_a_program_that_ends_within_its_answer_is_shown_with_its_complaint() -> None:
+    program = OneShot(["sh", "-c", "echo '{'; echo no such cell >&2; exit 1", "{instance}"], LIMITS)
+    outcome = ask(program, next(iter(smoke_cases(("plan",), Level.SOUND, True))), Level.SOUND)
+    assert (outcome.fault.rule, outcome.fault.stderr) == ("program/result", "no such cell\n")
+
+
 def test_the_environment_tells_nothing_of_the_case(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CARPROOF_SECRET", "the answer")
     assert os.environ["PYTEST_CURRENT_TEST"]
