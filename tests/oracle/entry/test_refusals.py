@@ -205,6 +205,7 @@ REFUSED = (
     # bounds and proofs
     ("audit town.json unordered.json", "[solution/order]"),
     ("bound town.json --plans east-plans.json", "plans to compare with must break no rule"),
+    ("bound town.json --plans comma.json", "Error: comma.json: $: "),
     ("bound --plans plans.json", "Give INSTANCE, or --map and --scen."),
     (
         "bound late.json --steps 1",

@@ -65,8 +65,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     require_limits(seconds=seconds, steps=steps)
     given = Problem(instance, benchmark)
     problem = given.read_instance()
-    with naming(given.name):
-        known = total_of(problem, plans, format)
+    known = total_of(problem, plans, format)
     limit = BOUND_SECONDS if seconds is None and steps is None else seconds
     seen: list[Progress] = []
 
