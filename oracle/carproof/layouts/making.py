@@ -97,10 +97,21 @@ def _robots(layout: Layout, graph: ResourceGraph, settings: Settings) -> tuple[R
         return tuple(_requested(layout, settings.requests, settings.requests_file))
     if settings.robots is None:
         return _vehicles(layout, graph, settings)
-    places = [each.id for each in _standing(layout, graph)]
     fleet = Fleet(settings.robots, settings.seed, settings.after_goal)
     refuse_wrong_options(fleet=(fleet, Fleet))
+    places = [each.id for each in _standing(layout, graph)]
+    _require_room(places, fleet.robots, "robots")
     return random_robots(fleet, places, places)
+
+
+def _require_room(places: list[str], robots: int, what: str) -> None:
+    """Refuse more robots than there are points for them."""
+    if not ends_suffice(len(places), robots):
+        message = (
+            f"{robots} {what} need as many points where vehicles may stand together and which all reach each other, "
+            f"and the layout has {len(places)}"
+        )
+        raise Refusal("option", "$.robots", ends_suffice.id, message)
 
 
 def _standing(layout: Layout, graph: ResourceGraph) -> list[Point]:
@@ -133,9 +144,7 @@ def _vehicles(layout: Layout, graph: ResourceGraph, settings: Settings) -> tuple
     if without:
         taken = {each.goal for each in layout.vehicles.values()}
         places = [each.id for each in _standing(layout, graph) if each.id not in taken]
-        if not ends_suffice(len(places), len(without)):
-            message = f"{len(without)} vehicles without goals need as many places, and the layout has {len(places)}"
-            raise Refusal("option", "$.robots", ends_suffice.id, message)
+        _require_room(places, len(without), "vehicles without goals")
         drawn = random_robots(Fleet(len(without), settings.seed, settings.after_goal), places, places)
         goals = {each.id: str(robot.goal) for each, robot in zip(without, drawn, strict=True)}
     return tuple(Robot(each.id, each.start, each.goal or goals[each.id]) for each in layout.vehicles.values())

@@ -81,7 +81,7 @@ def test_vehicles_of_the_file_are_the_robots_and_goals_are_drawn_from_the_seed()
 def test_robots_are_drawn_on_points_where_vehicles_may_stand_and_that_reach_each_other() -> None:
     drawn = imported(NAV_GRAPH, robots=2, seed=3).robots
     assert {each.start for each in drawn} | {each.goal for each in drawn} <= {"b", "c"}  # a is not reached again
-    with pytest.raises(Refusal, match=r"3 robots need as many distinct starts, and the map has 2 \[generate/ends\]"):
+    with pytest.raises(Refusal, match=r"reach each other, and the layout has 2 \[generate/ends\]"):
         imported(NAV_GRAPH, robots=3)
 
 
@@ -92,7 +92,7 @@ def test_robots_are_drawn_only_where_they_may_stand_together() -> None:
     for seed in range(8):
         robots = imported(shared, robots=2, seed=seed).robots
         assert {each.start for each in robots} != {"a", "c"} != {each.goal for each in robots}
-    with pytest.raises(Refusal, match="3 robots need as many distinct starts, and the map has 2"):
+    with pytest.raises(Refusal, match="3 robots need as many points where vehicles may stand together"):
         imported(shared, robots=3)
 
 
