@@ -73,9 +73,9 @@ class Conformance:
             claims: dict[str, Any] = {"without": without, "solvable": solvable, "groups": groups, "stops": stops}
             report = conforms(planner, *asked, **claims, large=large, saved=before.cases)
         except ModuleNotFoundError as error:
-            pytest.fail(f"carproof.conforms {advice(error) or error}", pytrace=False)
+            raise pytest.fail.Exception(f"carproof.conforms {advice(error) or error}", pytrace=False) from None
         except Refusal as refusal:
-            pytest.fail(str(refusal), pytrace=False)
+            raise pytest.fail.Exception(str(refusal), pytrace=False) from None
         if report.interrupted:
             raise KeyboardInterrupt
         try:
@@ -92,7 +92,8 @@ def _told(report: "Report", folder: Path) -> str:
     from carproof.conform.reporting.saving import picture_of  # noqa: PLC0415
 
     level = report.options.level
-    head = f"{report.program} does not conform to level {level.label}: {level.statement}"
+    verdict = "is not shown to" if report.conforms is None else "does not"
+    head = f"{report.program} {verdict} conform to level {level.label}: {level.statement}"
     if not report.failures:
         reasons = [*(fault.message for fault in report.faults), *report.shortfalls]
         return "\n".join([head, *(reasons or ["no random case decided it"])])

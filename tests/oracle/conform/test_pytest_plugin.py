@@ -96,14 +96,25 @@ def test_all_findings_are_saved_and_asked_first_by_the_next_run(tmp_path: Path) 
 @pytest.mark.parametrize(
     ("test", "reason"),
     [
-        ('carproof.conforms(gives_up, level="sound", large=0)', "it gave up"),
-        ('carproof.conforms(right, level="sound", examples=0)', "no random case decided it"),
+        (
+            'carproof.conforms(gives_up, level="sound", large=0)',
+            "gives_up does not conform to level sound: no plan breaks a rule\nit gave up",
+        ),
+        (
+            'carproof.conforms(right, level="sound", examples=0, large=0)',
+            "right is not shown to conform to level sound: no plan breaks a rule\nno random case decided it",
+        ),
     ],
 )
 def test_a_planner_that_shows_nothing_fails_the_test(test: str, reason: str, tmp_path: Path) -> None:
     done = pytest_of_another_project(tmp_path, test)
     assert "1 failed" in done.stdout
     assert reason in done.stdout
+
+
+def test_an_option_that_is_refused_is_told_once(tmp_path: Path) -> None:
+    done = pytest_of_another_project(tmp_path, 'carproof.conforms(right, level="best")')
+    assert done.stdout.count("it must be one of sound, complete-in-context") == 1
 
 
 def test_pytest_starts_without_loading_what_judges_planners() -> None:

@@ -72,6 +72,12 @@ def test_the_action_installs_what_it_lies_in(tmp_path: Path) -> None:
     assert (ROOT / "pyproject.toml").is_file()
 
 
+def test_the_action_does_not_pass_if_it_has_nothing_to_judge(tmp_path: Path) -> None:
+    step = STEPS["Refuse nothing to judge"]
+    assert step["if"] == "inputs.program == '' && inputs.solutions == ''"
+    assert run_step("Refuse nothing to judge", tmp_path).returncode == 2
+
+
 def test_the_action_judges_a_planner_and_leaves_a_report(tmp_path: Path) -> None:
     (tmp_path / "planner.py").write_text(PLANNER)
     program, options = f"{sys.executable} planner.py {{instance}}", "--seed 1 --timeout 60"
