@@ -15,7 +15,7 @@ from carp_spec import Instance, Refusal, Solution
 from carp_spec.documents.instances import read_instance
 from carp_spec.documents.solutions import read_solution
 from carp_spec.requests import sound_solution
-from carproof.formats.layouts import layout_named
+from carproof.formats.layouts import MAP, layout_named
 from carproof.requests import document_of
 
 T = TypeVar("T")
@@ -85,18 +85,18 @@ class OutputFile(click.Path[Path]):
         return Path(value)
 
 
-def read_bytes(name: str, *, layouts: bool = False) -> bytes:
+def read_bytes(name: str, *, layouts: bool = False, map: bool = False) -> bytes:
     """Read a file, or standard input for `-`, without the byte order mark that some systems put before UTF-8.
 
-    A layout is refused by its name, unless layouts are expected.
+    A layout or a map is refused by its name, unless one is expected.
     """
     try:
         data = sys.stdin.buffer.read() if name == STANDARD_INPUT else Path(name).read_bytes()
     except OSError as error:
         raise click.ClickException(f"{name}: it cannot be read: {error.strerror}") from error
-    if not layouts and (layout := layout_named(data)) is not None:
-        message = f"{shown(name)}: this is {layout}, not an instance; carproof convert makes instances of layouts."
-        raise click.ClickException(message)
+    if not layouts and (layout := layout_named(data)) is not None and not (map and layout == MAP):
+        advice = "carproof convert makes instances of layouts and maps."
+        raise click.ClickException(f"{shown(name)}: this is {layout}, not an instance; {advice}")
     return data.removeprefix(BYTE_ORDER_MARK)
 
 

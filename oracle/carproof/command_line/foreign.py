@@ -53,7 +53,7 @@ class MovingAI:
 
     def read(self) -> Instance:
         """Read an instance from the map and the scenario."""
-        grid = read_map(read_bytes(self.map), shown(self.map))
+        grid = read_map(read_bytes(self.map, map=True), shown(self.map))
         robots = read_scenario(read_bytes(self.scen), grid, self.agents, shown(self.scen))
         return movingai_instance(grid, robots, self.after_goal, shown(self.map))
 

@@ -7,11 +7,13 @@ from contextlib import suppress
 
 BEGINNING = 100_000
 """The bytes by which a text is recognised."""
+MAP = "a map of MovingAI"
 TEXTS: Mapping[str, str] = {
     "an openTCS plant model": r"<model\b[^>]*>(?=.*<(point|path|vehicle)\b)",
     "an Open-RMF building or navigation graph": r"^levels:(?=.*^\s+-?\s*(vertices|lanes):)",
     "another XML document": r"\A\s*<\?xml\b",
     "a map for ROS": r"^image:(?=.*^resolution:)",
+    MAP: r"\Atype [a-z]+\r?\nheight ",
 }
 GEOJSON = {"FeatureCollection", "Feature", "GeometryCollection"}
 

@@ -276,6 +276,11 @@ REFUSED = (
     ("experiment quality --backend dask --store st", "needs the address of its --scheduler"),
     # layouts in place of instances
     *OTHERS,
+    (
+        "plan m.map",
+        "Error: m.map: this is a map of MovingAI, not an instance; carproof convert makes instances of layouts",
+    ),
+    ("check m.map lacam", "Error: m.map: this is a map of MovingAI, not an instance"),
 )
 WRITES = ("plan", "polish", "retime", "give-way", "view")
 

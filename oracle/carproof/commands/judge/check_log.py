@@ -55,7 +55,7 @@ def command(
         with naming(files[-1]) if format == "trace" else nullcontext():  # the others name it with the line
             log = read_log(data, instance, format, name)
     else:
-        instance, log = read_log_on_map(data, read_map(read_bytes(map), shown(map)), format, name)
+        instance, log = read_log_on_map(data, read_map(read_bytes(map, map=True), shown(map)), format, name)
     most = None if everything else MOST_LISTED
     with naming(files[-1]):
         verdict = judge_log(instance, log, most)

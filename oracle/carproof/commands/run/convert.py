@@ -108,6 +108,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
 def _show_benchmark(benchmark: MovingAI, output: Output) -> Answer:
     first = benchmark.map
-    if first != STANDARD_INPUT and read_bytes(first).lstrip().startswith(b"{"):
+    if first != STANDARD_INPUT and read_bytes(first, map=True).lstrip().startswith(b"{"):
         raise click.UsageError(f"{first} is no map; to convert a solution of an instance, name a format by --to.")
     return show_instance(benchmark.read(), output)
