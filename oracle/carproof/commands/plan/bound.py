@@ -34,7 +34,12 @@ COLUMNS = ("robots", "shortest paths", "lower bound", "total cost", "gap", "step
     "--seconds", type=click.IntRange(min=1), help=f"The time of the whole command.  [default: {BOUND_SECONDS}]"
 )
 @click.option("--steps", type=click.IntRange(min=0), help="End after this many steps, whatever time they take.")
-@click.option("--plans", type=InputFile(), help="A solution in any format, whose total is set against the bound.")
+@click.option(
+    "--plans",
+    metavar="SOLUTION",
+    type=InputFile(),
+    help="Plans in any format, whose total is set against the bound.",
+)
 @from_option
 @output_options
 @click.pass_context
