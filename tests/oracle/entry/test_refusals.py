@@ -240,6 +240,11 @@ REFUSED = (
     ("convert m.json lacam --from lacam", "--from and --to concern a solution."),
     ("convert m.json lacam --to lacam --agents 1", "--to concerns a solution."),
     (
+        "convert m.json lacam --to csv --from nav2",
+        "Error: --from: nav2 is no format of a solution; these are carproof, ",
+    ),
+    ("convert plant.xml --from lacam", "Error: --from: lacam is no format of a layout; these are opentcs, "),
+    (
         "convert town.json plans.json",
         "town.json is no map; to convert a solution of an instance, name a format by --to.",
     ),
