@@ -8,7 +8,7 @@ from fractions import Fraction
 from carp_spec import AfterGoal, Refusal
 from carp_spec.rule import DESIGN
 from carp_spec.shapes import require_shape
-from carp_verify.footprint.rules import Footprint
+from carp_verify.footprint.rules import Footprint, vehicle_has_a_size
 from carproof.input_rules import Code
 
 MILLIMETRES = {"mm": Fraction(1), "cm": Fraction(10), "m": Fraction(1000)}
@@ -46,12 +46,14 @@ class Settings:
 
 
 def require_settings(settings: Settings) -> None:
-    """Raise `Refusal` for values of other types, and unless the tick, the speed and the time of a turn are above 0."""
+    """Raise `Refusal` for values of other types, times and speeds that are not above 0, and a wrong footprint."""
     require_shape(settings, Settings)
     for name in ("tick", "speed", "turning"):
         value = getattr(settings, name)
         if value is not None and value <= 0:
             raise Refusal("option", f"$.{name}", RIGHT_SETTINGS.id, f"it must be above 0, and is {value}")
+    for fault in () if settings.footprint is None else vehicle_has_a_size(settings.footprint):
+        raise Refusal("option", fault.path, fault.rule, fault.message)
 
 
 def seconds(text: str, name: str = "tick") -> Fraction:

@@ -298,6 +298,11 @@ def found(**values: Any) -> carproof.BoundDocument:  # noqa: ANN401
     return structs.replace(carproof.bound(RIGHT, steps=0), **values)
 
 
+def imported_for(size: carproof.Footprint) -> carproof.Imported:
+    layout = b"roadmap:\n  undirected: true\n  vertices: {a: [0, 0], b: [1, 0]}\n  edges: [[a, b]]\n"
+    return carproof.import_layout(layout, settings=carproof.Settings(robots=0, footprint=size))
+
+
 def far_away(x: int) -> Instance:
     return Instance(ResourceGraph((Resource("a", x=x, y=0), Resource("b")), (("a", "b"),)), (Robot("r", "a", "b"),))
 
@@ -377,6 +382,8 @@ def far_away(x: int) -> Instance:
         (lambda: carproof.instance_from_array([[1]], NONE, []), "adapter/array", "$.starts"),
         (lambda: write_foreign_solution(RIGHT, SOLVED, [NONE]), "document/shape", "$.format"),  # type: ignore[arg-type]
         (lambda: carproof.import_layout(b"", format=[NONE]), "document/shape", "$.format"),  # type: ignore[arg-type]
+        (lambda: imported_for(carproof.Footprint(0, 600)), "footprint/vehicle", "$.footprint.length"),
+        (lambda: imported_for(carproof.Footprint(900, 600, round=True)), "footprint/vehicle", "$.footprint"),
         (lambda: write_solution(Solution((), (), ("\ud800",))), "document/json", "$"),
         (lambda: carproof.read_movingai(b"", b"", -1), "movingai/scenario", "$.agents"),
         (lambda: carproof.conforms(carproof.plan, examples=-1), "program/questions", "$.examples"),
