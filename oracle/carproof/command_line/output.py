@@ -48,9 +48,9 @@ def show_found(instance: Instance, found: "Found", planner: str, seconds: float)
 
 
 def show_not_found(unplanned: Sequence[RobotId]) -> None:
-    """Print the robots that are left out within a time, in no time: nobody asks why."""
+    """Print the robots that a search within a time or a number of rounds leaves out; nobody asks why."""
     for robot in unplanned[:MOST_LISTED]:
-        print_line(f"unplanned: robot {robot}: no plan was found for it in this time")
+        print_line(f"unplanned: robot {robot}: no plan was found for it")
     if len(unplanned) > MOST_LISTED:
         print_line(f"unplanned: and {len(unplanned) - MOST_LISTED} more")
 

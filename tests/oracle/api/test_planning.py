@@ -33,6 +33,13 @@ def test_a_robot_that_another_planner_could_plan_is_told_so(carproof: Run) -> No
     )
 
 
+def test_a_robot_left_out_after_rounds_is_told_without_a_time(carproof: Run) -> None:
+    save(opposite=corridor([EAST, {"id": "r2", "start": "c", "goal": "a"}], "park"))
+    outcome = carproof("plan opposite.json --iterations 3")
+    assert outcome.code == 1
+    assert outcome.stdout.splitlines()[-1].endswith(": no plan was found for it")
+
+
 @pytest.mark.parametrize(
     "options",
     [
