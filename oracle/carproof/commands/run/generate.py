@@ -26,7 +26,7 @@ HELP = {
     "rack_length": "Cells of a rack from left to right.",
     "rack_depth": "Cells of a rack from top to bottom.",
     "aisle": "Cells across an aisle.",
-    "stations": "Picking stations at the left side.",
+    "stations": "Picking stations at the left side, at most one a row.",
     "start_at": "Where robots start.",
     "robots": "How many robots.",
     "seed": "The seed of the robots.",
