@@ -13,6 +13,7 @@ from carproof.command_line.files import InputFile, Output, print_document, read_
 from carproof.command_line.options import gathered, options_given, read_by
 from carproof.command_line.output import show_instance
 from carproof.command_line.tables import remark
+from carproof.formats.layouts import MAP, layout_named
 from carproof.layouts import Settings, import_layout
 from carproof.layouts.settings import footprint, millimetres, seconds, speed
 
@@ -65,7 +66,10 @@ def show_layout(
             raise click.UsageError("--requests has the robots, so --robots and --seed do not apply.")
         options = {**options, "requests": read_bytes(requests), "requests_file": shown(requests)}
     settings = Settings(after_goal=after_goal, **options)
-    imported = import_layout(read_bytes(name, layouts=True), shown(name), format, settings)
+    data = read_bytes(name, layouts=True)
+    if layout_named(data) == MAP:
+        raise click.UsageError(f"{shown(name)}: this is {MAP}: give its scenario too.")
+    imported = import_layout(data, shown(name), format, settings)
     if output.as_json and output.file is not None:
         write_whole(output.file, write_instance(imported.instance))
         notes = [{"feature": each.feature, "lines": [*each.lines]} for each in imported.notes]

@@ -285,6 +285,7 @@ REFUSED = (
         "plan m.map",
         "Error: m.map: this is a map of MovingAI, not an instance; carproof convert makes instances of layouts",
     ),
+    ("convert m.map", "Error: m.map: this is a map of MovingAI: give its scenario too."),
     ("check m.map lacam", "Error: m.map: this is a map of MovingAI, not an instance"),
 )
 WRITES = ("plan", "polish", "retime", "give-way", "view")
