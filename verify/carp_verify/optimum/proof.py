@@ -151,7 +151,7 @@ def verify_proof(proof: Path | ProofFiles, instance: Instance | None = None) -> 
     Raises `ProofError` where it does not prove its claim, and `Refusal` for a malformed instance or no path.
     """
     if not isinstance(proof, Path | ProofFiles):
-        raise Refusal("document", "$", SHAPE, f"it must be the path of a proof directory, not {shown(proof)}")
+        raise Refusal("document", "$", SHAPE, f"it must be the pathlib.Path of a proof directory, not {shown(proof)}")
     asked = None if instance is None else write_instance(instance)
     read = proof if isinstance(proof, ProofFiles) else read_proof(proof)
     proved = read_instance(read.contents["instance.json"])
