@@ -264,6 +264,7 @@ REFUSED = (
     ("conform --executor --kernel -- cat", "--executor can be combined with neither --one-shot nor --kernel."),
     ("conform --executor --one-shot -- cat", "--executor can be combined with neither --one-shot nor --kernel."),
     ("conform --timeout inf -- cat", "inf is not in the range 0<x<=86400."),
+    ("conform --timeout nan -- cat", "Error: --timeout: it must be a number of at least 0, not nan"),
     # sizes and times
     ("convert plant.xml --tick 0s", "--tick: it must be a number above 0"),
     ("convert plant.xml --speed 3kn", "--speed: it must be a number above 0"),

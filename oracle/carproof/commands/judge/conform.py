@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 from click.core import ParameterSource
 
+from carp_spec.inputs.options import require_limits
 from carp_verify.kernel import version
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import OutputFile, hypothesis_elsewhere, print_document, write_whole
@@ -180,6 +181,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     from carproof.conform.run import Options, conform  # noqa: PLC0415
 
     require("hypothesis", "pysat")
+    require_limits(timeout=timeout, large=large, shrinking=shrinking)
     if format is not None and not one_shot:
         raise click.UsageError("--from concerns the files that programs write with --one-shot.")
     if executor and (one_shot or kernel):
