@@ -8,7 +8,7 @@ from hypothesis import given
 
 from carp_optimized import plan
 from carp_optimized.improve.repair import plan_failed_first, repair, repair_jointly
-from carp_spec import Carp, Instance, Resource, ResourceGraph, Robot, Solution, judge
+from carp_spec import Carp, Group, Instance, Resource, ResourceGraph, Robot, Solution, judge
 from carproof import Following
 from carproof.generate import Fleet, Grid, grid_instance
 from carproof.testing.strategies import PlannedInstance, Sizes, planned_instances
@@ -36,6 +36,40 @@ def test_two_robots_that_swap_at_a_pocket_are_planned_jointly(following: Followi
     for repaired in (repair(instance, given), repair_jointly(instance, given)):
         assert not repaired.unplanned
         assert judge(instance, repaired).valid
+
+
+def lanes(*zone: str, capacity: int = 1, ends: tuple[str, str] = ("west", "east")) -> Instance:
+    """The passage with a pocket, with a lane in each direction between two places, which are a group, and a zone.
+
+    Two robots swap the ends.
+    """
+    places = tuple(Resource(id) for id in ("west", "middle", "east", "pocket"))
+    pairs = [(end, "middle") for end in ("west", "east", "pocket")]
+    ways = [way for pair in pairs for way in (pair, pair[::-1])]
+    resources = (*places, *(Resource(f"{source}-{target}") for source, target in ways))
+    edges = tuple(move for a, b in ways for move in ((a, f"{a}-{b}"), (f"{a}-{b}", b)))
+    groups = [Group(f"{a}={b}", (f"{a}-{b}", f"{b}-{a}")) for a, b in pairs]
+    if zone:
+        groups.append(Group("zone", zone, capacity))
+    robots = (Robot("r1", *ends), Robot("r2", *ends[::-1]))
+    return Instance(ResourceGraph(resources, edges, True, tuple(groups)), robots, "park")
+
+
+@pytest.mark.parametrize(
+    "instance",
+    [
+        lanes(),
+        lanes("pocket", "middle", capacity=2),
+        lanes("pocket", "middle-east", "middle-west"),
+        lanes(ends=("pocket", "middle")),
+    ],
+)
+def test_robots_that_swap_where_lanes_are_groups_are_planned_jointly(instance: Instance) -> None:
+    given = plan(instance, Carp())
+    assert len(given.unplanned) == 1
+    repaired = repair_jointly(instance, given)
+    assert not repaired.unplanned
+    assert judge(instance, repaired).valid
 
 
 def test_a_robot_that_no_small_group_helps_is_planned_in_another_order() -> None:
@@ -76,7 +110,7 @@ def test_a_pocket_is_used_up_to_its_capacity() -> None:
         assert len(repaired.unplanned) == left_out
 
 
-@given(planned_instances(Sizes(resources=7, robots=6)))
+@given(planned_instances(Sizes(resources=7, robots=6)) | planned_instances(Sizes(resources=7, robots=6, groups=2)))
 def test_repaired_plans_break_no_rule_and_nobody_loses_a_plan(planned: PlannedInstance) -> None:
     instance, given = planned.instance, planned.solution
     whole = Solution(given.plans, given.order, tuple(each for each in instance.robot if each not in given.order))

@@ -65,8 +65,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     """Plan all robots of INSTANCE, a document or - for standard input.
 
     An option that is not given keeps the planner's default; one that the planner does not have is refused. If the
-    planner leaves robots out, rounds of a polish, other orders and, where the graph has no groups, joint plans of a few
-    robots repair that. Robots that stay unplanned are listed with the reason.
+    planner leaves robots out, rounds of a polish, joint plans of a few robots and other orders repair that. Robots that
+    stay unplanned are listed with the reason.
 
     With --seconds, the first plans are those of CARP or of a search over the places of all robots (LaCAM), and large
     neighbourhood search improves them until the time is over; what the machine does in that time decides the plans.
