@@ -170,8 +170,7 @@ def is_total_cost(instance: Instance, plans: Sequence[Plan], cost: int) -> bool:
 @violation_rule(
     "fleet/history",
     "A plan made again at the tick now keeps every visit entered by now: the last of them is entered at the same tick "
-    "and left no earlier than now, those before it are unchanged. A plan whose last visit is left by now is unchanged. "
-    "A robot that was released by now and had no plan has been at its start since its release.",
+    "and left no earlier than now, those before it are unchanged. A plan whose last visit is left by now is unchanged.",
     DESIGN,
 )
 def plan_keeps_history(before: Plan, after: Plan, now: int) -> Iterator[Breach]:

@@ -42,8 +42,8 @@ check --require-all, a robot without a plan), 2 bad input or usage,
 3 undecided within the limit given.
 """
 
-ARGUMENTS = {"$.robot": "ROBOT", "$.stops": "STOP"}
-"""The arguments of commands that stand for fields of requests."""
+ARGUMENTS = {"$.robot": "ROBOT", "$.stops": "STOP", "$.format": "--from"}
+"""The arguments and options of commands that stand for fields of other names."""
 
 
 @click.group(

@@ -8,8 +8,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import count, takewhile
 
-from msgspec import structs
-
 from carp_spec import Group, Instance, Plan, Resource, Robot, RobotId, Solution, Visit, plan_cost
 from carp_spec.execution.dependencies import dependencies, shortest_cycle
 from carp_spec.windows import occupancy, stays_within
@@ -81,7 +79,7 @@ def query_kept_out(
         here = occupancy(stays_within(others, {block.resource}), block.enter)
         outside.append(Resource(next(names), capacity))
         groups.append(Group(next(names), (block.resource, outside[-1].id), capacity))
-        visit = structs.replace(block, resource=outside[-1].id)
+        visit = Visit(outside[-1].id, block.enter, block.leave)
         guards += [Plan(next(names), (visit,)) for _ in range(capacity - here)]
     standing = (Robot(guard.robot, guard.visits[0].resource, guard.visits[0].resource) for guard in guards)
     extended = replace(graph, resources=(*graph.resources, *outside), groups=(*graph.groups, *groups))

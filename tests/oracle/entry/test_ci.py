@@ -73,9 +73,8 @@ def test_the_action_installs_what_it_lies_in(tmp_path: Path) -> None:
 
 
 def test_the_action_does_not_pass_if_it_has_nothing_to_judge(tmp_path: Path) -> None:
-    step = STEPS["Refuse nothing to judge"]
-    assert step["if"] == "inputs.program == '' && inputs.solutions == ''"
-    assert run_step("Refuse nothing to judge", tmp_path).returncode == 2
+    for given, code in (({}, 2), ({"program": "./planner"}, 0), ({"solutions": "plans.json"}, 0)):
+        assert run_step("Refuse nothing to judge", tmp_path, **given).returncode == code
 
 
 def test_the_action_judges_a_planner_and_leaves_a_report(tmp_path: Path) -> None:

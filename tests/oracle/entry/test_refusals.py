@@ -241,9 +241,9 @@ REFUSED = (
     ("convert m.json lacam --to lacam --agents 1", "--to concerns a solution."),
     (
         "convert m.json lacam --to csv --from nav2",
-        "Error: --from: nav2 is no format of a solution; these are carproof, ",
+        "Error: --from: there is no format 'nav2'; the formats are carproof, ",
     ),
-    ("convert plant.xml --from lacam", "Error: --from: lacam is no format of a layout; these are opentcs, "),
+    ("convert plant.xml --from lacam", "Error: --from: there is no format 'lacam'; the formats are opentcs, "),
     (
         "convert town.json plans.json",
         "town.json is no map; to convert a solution of an instance, name a format by --to.",

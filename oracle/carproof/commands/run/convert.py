@@ -1,6 +1,5 @@
 """`carproof convert`: instances of benchmarks and layouts, and solutions in the formats of other tools."""
 
-from collections.abc import Collection
 from typing import Any, get_args
 
 import click
@@ -88,7 +87,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     if second is None:
         if agents is not None or to is not None:
             raise click.UsageError("--agents concerns a scenario and --to a solution: give a second file.")
-        _refuse_unless_among(format, READERS, "layout")
         return show_layout(first, format, layout, after_goal or "park", output)
     if layout:
         raise click.UsageError(f"--{next(iter(layout))} concerns a layout, which is one file.")
@@ -98,7 +96,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         return _show_benchmark(MovingAI(first, second, agents, after_goal or "park"), output)
     if agents is not None or after_goal is not None or output.as_json:
         raise click.UsageError("--agents, --after-goal and --json concern instances, and --to concerns a solution.")
-    _refuse_unless_among(format, ADAPTERS, "solution")
     instance = read_instance_file(first)
     solution = read_solution_of(instance, second, format)
     if version is None:
@@ -107,11 +104,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
         data = write_orders(instance, solution, OrderSettings(version=version, **orders))
     Output(output.file, as_json=output.file is None).write(data)
     return Answer.YES
-
-
-def _refuse_unless_among(format: str | None, formats: Collection[str], kind: str) -> None:
-    if format is not None and format not in formats:
-        raise click.UsageError(f"--from: {format} is no format of a {kind}; these are {', '.join(formats)}.")
 
 
 def _show_benchmark(benchmark: MovingAI, output: Output) -> Answer:
