@@ -41,7 +41,7 @@ def conforms(  # noqa: PLR0913 - the options of the command
     other time limits it. `saved` are cases to ask first. The report's `conforms` is the answer, and its `failures` have
     the smallest cases found. Raises `Refusal` for an unknown level or feature.
     """
-    require("hypothesis", "pysat")
+    require("pysat")
     require_each([*without] if isinstance(cast("object", without), Collection) else without, str, "$.without")
     require_limits(large=large)
     levels = [each.label for each in WHOLE_LEVELS]

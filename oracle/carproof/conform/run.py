@@ -3,10 +3,13 @@
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import islice
 from time import monotonic
 
+from carp_spec.permutations import splitmix64
 from carproof.conform.answers import Subject, protocol_error
 from carproof.conform.asking.ladder import SIZES, Rung, large_case, rungs
+from carproof.conform.asking.random_cases import classical_case, execution_case, random_cases
 from carproof.conform.asking.smoke import smoke_cases
 from carproof.conform.asking.vector_cases import vector_cases
 from carproof.conform.cases import EXECUTION, Case
@@ -17,9 +20,12 @@ from carproof.conform.judging.gave_up import Effort
 from carproof.conform.judging.outcome import Outcome, ask
 from carproof.conform.levels import EXAMPLES, EXECUTOR_LEVELS, JUDGED_OPS, Level
 from carproof.conform.shrinking import SHRINK_SECONDS, FailureSearch
+from carproof.testing.random_instances import Draw
 
 MOST_FAULTS = 3
 """After this many crashes, timeouts and protocol errors no further fixed case is asked: each costs a new process."""
+MOST_DRAWN = 50
+"""So many random cases are drawn for one that a program claims."""
 LARGEST_PART = 10
 """A large case that takes more than this part of the time for all is too slow: none of its size is asked again."""
 
@@ -260,23 +266,18 @@ class _Run:
 
     def ask_random(self, ops: Sequence[str]) -> None:
         """Ask as many of each op."""
-        from carproof.conform.asking.random_cases import (  # noqa: PLC0415 - loads hypothesis
-            classical_cases,
-            execution_cases,
-            random_cases,
-        )
-
         options = self.options
+        by_op = random_cases(ops, options.level, options.whole, options.claims)
         if options.executor:
-            by_op = {EXECUTION: execution_cases(options.claims)}
+            by_op = {EXECUTION: execution_case(options.claims)}
         elif options.classical:
-            by_op = {"plan": classical_cases()}
-        else:
-            by_op = dict(random_cases(ops, options.level, options.whole, options.claims))
-        for number, cases in enumerate(by_op.values()):
+            by_op = {"plan": classical_case}
+        for number, draw_case in enumerate(by_op.values()):
             examples = (options.examples + number) // len(by_op)
-            if examples and self.search.best is None:
-                self.search.run(cases.filter(self.is_claimed), examples, options.seed)
+            if self.search.best is None:
+                draw = Draw(splitmix64(options.seed))
+                drawn = (draw_case(draw) for _ in range(MOST_DRAWN * examples))
+                self.search.run(islice(filter(self.is_claimed, drawn), examples))
 
     def ask_large(self, ops: Sequence[str]) -> None:
         """Ask large cases until one fails or the time is over; of what is too slow, none of its size is asked again."""
@@ -303,7 +304,7 @@ class _Run:
                 continue
             self.add(outcome)
             if outcome.finding is not None:
-                self.search.run_on(outcome)
+                self.search.shrink(outcome, outcome.seconds)
                 return
             if monotonic() - started > most and rung.robots < SIZES[-1]:
                 too_large[rung.op] = next(robots for robots in SIZES if robots > rung.robots)

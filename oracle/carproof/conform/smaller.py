@@ -257,7 +257,7 @@ def _fewer_edges(best: Smallest) -> Iterator[Case]:
 
 
 def _simpler(best: Smallest) -> Iterator[Case]:
-    """Let robots vanish and edges go both ways; let a robot without plan end where it starts; shorten far ids."""
+    """Let robots vanish and edges go both ways; let a robot without plan end where it starts; number from 0 on."""
     robots = [*best.case.instance.robot]
     yield _made(best.case, replace(best.case.instance, after_goal="vanish"))
     edges = {frozenset(edge): edge for edge in best.case.instance.graph.edges}
@@ -266,7 +266,8 @@ def _simpler(best: Smallest) -> Iterator[Case]:
         if id in best.case.instance.robot and all(plan.robot != id for plan in best.case.solution.plans):
             stays = (Stop(best.case.instance.robot[id].start),)
             yield replace(best.case, instance=_with_robot(best.case, id, stops=stays))
-    if any(len(str(id)) >= LONG_ID for id in (*best.case.instance.graph.index, *best.case.instance.robot)):
+    ids = (*best.case.instance.graph.index, *best.case.instance.robot)
+    if any(isinstance(id, int) or len(id) >= LONG_ID for id in ids):
         yield _numbered(best.case)
 
 
@@ -362,6 +363,8 @@ def _fewer_visits(best: Smallest) -> Iterator[Case]:
         if len(visits) < 2 or any(late == id for late, _, _ in case.delays):  # noqa: PLR2004 - one visit must stay
             continue
         left = visits[1:] if at_start else visits[:-1]
+        if left[0 if at_start else -1].resource not in case.instance.graph.index:
+            continue  # a plan to check is anywhere
         ends = {"start": left[0].resource, "release": left[0].enter} if at_start else {"goal": left[-1].resource}
         plans = [Plan(id, left) if plan.robot == id else plan for plan in case.solution.plans]
         yield _made(case, _with_robot(case, id, **ends), plans)

@@ -33,6 +33,7 @@ from carproof.testing.timing import path_over, timed_plan
 T = TypeVar("T")
 
 MOST_MEMBERS = 4
+POLICIES: tuple[AfterGoal, ...] = ("vanish", "park")
 SIMPLE_PLANNERS: tuple[Planner, ...] = (Carp(), LongestFirst(), Greedy())
 
 
@@ -124,7 +125,7 @@ def draw_instance(draw: Draw, mix: Mix = SMALL) -> Instance:
     resources = tuple(
         Resource(
             id,
-            **_numbers(draw, mix, Resource, lambda: simple),
+            **draw_numbers(draw, mix, Resource, lambda: simple),
             **({} if draw.happens(8) else {"x": draw.between(-2, 3), "y": draw.between(-2, 3)}),
         )
         for id in ids
@@ -138,19 +139,20 @@ def draw_instance(draw: Draw, mix: Mix = SMALL) -> Instance:
             id,
             start,
             goals[place % len(goals)] if goals else draw.one_of(ids),
-            **_numbers(draw, mix, Robot, lambda: simple or draw.happens(2)),
+            **draw_numbers(draw, mix, Robot, lambda: simple or draw.happens(2)),
         )
         for place, (id, start) in enumerate(zip(draw_ids(draw, count), starts, strict=False))
     )
-    policies: tuple[AfterGoal, ...] = ("vanish", "park")
     if mix.stops > 1:
         robots = tuple(replace(robot, stops=draw_stops(draw, ids, robot, mix)) for robot in robots)
-    after_goal = draw.one_of(policies)
+    after_goal = draw.one_of(POLICIES)
     following = draw.one_of(mix.followings) if len(mix.followings) > 1 else mix.followings[0]
     return Instance(graph, robots, after_goal, following)
 
 
-def _numbers(draw: Draw, mix: Mix, kind: type[Resource | Robot], is_least: Callable[[], bool]) -> dict[str, Any]:
+def draw_numbers(
+    draw: Draw, mix: Mix, kind: type[Resource | Robot], is_least: Callable[[], bool] = lambda: False
+) -> dict[str, Any]:
     """The numbers of a resource or a robot by their names; the mix has the values of each under its feature."""
     numbers = numbers_of(kind).items()
     return {name: each.least if is_least() else draw.one_of(getattr(mix, each.feature)) for name, each in numbers}
@@ -221,14 +223,23 @@ def draw_neighbourhood(draw: Draw) -> Neighbourhood:
 def draw_fleet(draw: Draw, instance: Instance) -> FleetUnderWay:
     """A fleet under way; its plans make detours and wait, as those of any planner might."""
     new, *others = shuffle(instance.robots, draw.stream)
+    plans = draw_plans(draw, instance, others)
+    return FleetUnderWay(instance, Solution.of(instance, plans), new.id, draw.between(0, last_tick(plans)))
+
+
+def last_tick(plans: Sequence[Plan]) -> int:
+    """The last tick at which a robot enters or leaves anything, 0 without plans."""
+    return max((visit.leave or visit.enter for plan in plans for visit in plan.visits), default=0)
+
+
+def draw_plans(draw: Draw, instance: Instance, robots: Sequence[Robot]) -> list[Plan]:
+    """Plans of the robots, one after the other, that break no rule together; who finds none has none."""
     plans: list[Plan] = []
-    for robot in others:
+    for robot in robots:
         plan = draw_plan(draw, instance, plans, robot)
         if plan is not None:
             plans.append(plan)
-    solution = Solution.of(instance, plans)
-    last = max((visit.leave or visit.enter for plan in plans for visit in plan.visits), default=0)
-    return FleetUnderWay(instance, solution, new.id, draw.between(0, last))
+    return plans
 
 
 def draw_plan(draw: Draw, instance: Instance, committed: Sequence[Plan], robot: Robot) -> Plan | None:

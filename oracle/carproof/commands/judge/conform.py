@@ -14,7 +14,7 @@ from click.core import ParameterSource
 from carp_spec.inputs.options import require_limits
 from carp_verify.kernel import version
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import OutputFile, hypothesis_elsewhere, print_document, write_whole
+from carproof.command_line.files import OutputFile, print_document, write_whole
 from carproof.command_line.options import examples, json_option, kernel_option
 from carproof.command_line.tables import counted, print_line, print_table, printable, remark
 from carproof.conform.cases import ASKED_OPS
@@ -180,7 +180,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     from carproof.conform.reporting.saved import own_folder, read_saved  # noqa: PLC0415
     from carproof.conform.run import Options, conform  # noqa: PLC0415
 
-    require("hypothesis", "pysat")
+    require("pysat")
     require_limits(timeout=timeout, large=large, shrinking=shrinking)
     if format is not None and not one_shot:
         raise click.UsageError("--from concerns the files that programs write with --one-shot.")
@@ -214,7 +214,7 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     before = read_saved(folder, one_shot)
     if before.stale is not None:
         remark(printable(before.stale))
-    with progress("asking", number) as advance, hypothesis_elsewhere():
+    with progress("asking", number) as advance:
         report = conform(subject, options, advance, before.cases)
     saved = _saved(report, folder, origin, before)
     if junit is not None:

@@ -51,7 +51,7 @@ PLANNERS: Sequence[Planner] = (
     LongestFirst(),
     Neighbourhood(m=3, sample=2, seed=5, fallback=2),
 )
-"""The planners that are asked at `exact`; the compiled planner has them all."""
+"""The planners that large cases ask at `exact`; the compiled planner has them all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +127,7 @@ def large_case(rung: Rung, claims: Claims, classical: bool) -> Case | None:
     draw = Draw(splitmix64(rung.seed))
     traffic = _claimed(rung.traffic, claims)
     if classical:
-        instance = _blocked_grid(rung.robots, draw)
+        instance = blocked_grid(rung.robots, draw)
     else:
         traits = Traits(Range(1, traffic.capacity), Range(1, traffic.duration))
         instance = _with_traffic(PLACES[rung.place](rung.robots, traits, draw), traffic, claims, draw)
@@ -211,7 +211,7 @@ def _row(length: int, robots: int, traits: Traits, draw: Draw) -> Instance:
     return Instance(graph, tuple(going))
 
 
-def _blocked_grid(robots: int, draw: Draw) -> Instance:
+def blocked_grid(robots: int, draw: Draw) -> Instance:
     """A grid as files of classical planners have it, with blocked cells."""
     side, one_in = _side(4 * robots), draw.between(4, 9)
     cells = [(x, y) for y in range(side) for x in range(side) if y < side // 2 or not draw.happens(one_in)]

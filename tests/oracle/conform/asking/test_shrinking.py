@@ -1,11 +1,9 @@
-"""The search for a random case that fails, and for a smaller one that fails in the same way."""
+"""The search for a case that fails, and for a smaller one that fails in the same way."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import pytest
-from hypothesis import strategies as st
-from hypothesis.internal.conjecture import engine
 
 from carp_spec import Robot, Solution
 from carproof.conform import shrinking
@@ -26,27 +24,31 @@ def case(robots: int) -> Case:
     return Case("random", "query", "query", row([Robot(number, "a", "b") for number in range(robots)]))
 
 
-CASES = st.integers(0, MOST).map(case)
-
-
 class Asked:
     """Asks by a judge of the number of robots, and remembers the numbers and the limits of time."""
 
     def __init__(self, judge: Judge, taken: float = 0.0) -> None:
         self.judge = judge
         self.taken = taken
+        self.cases: list[Case] = []
         self.robots: list[int] = []
         self.limits: list[float | None] = []
 
     def __call__(self, asked: Case, seconds: float | None) -> Outcome:
+        self.cases.append(asked)
         self.robots.append(len(asked.instance.robots))
         self.limits.append(seconds)
         return Outcome(asked, self.judge(self.robots[-1]), seconds=self.taken)
 
 
-def search(asked: Asked, examples: int = 100, shrink_seconds: float = 60.0, limit: float = 5.0) -> FailureSearch:
+UP_AND_DOWN = (0, 2, 1, 7, 4, MOST, *range(MOST))
+
+
+def search(
+    asked: Asked, robots: Sequence[int] = UP_AND_DOWN, shrink_seconds: float = 60.0, limit: float = 5.0
+) -> FailureSearch:
     made = FailureSearch(asked, limit, shrink_seconds)
-    made.run(CASES, examples, seed=1)
+    made.run(map(case, robots))
     return made
 
 
@@ -58,7 +60,8 @@ def best(made: FailureSearch) -> tuple[int, Finding | None]:
 @pytest.mark.parametrize("least", [0, 1, 3])
 def test_the_smallest_case_that_fails_is_found(least: int) -> None:
     asked = Asked(lambda robots: JUMPS if robots >= least else None)
-    assert best(search(asked)) == (least, JUMPS)
+    made = search(asked)
+    assert (best(made), made.minimal, made.repeats) == ((least, JUMPS), True, True)
 
 
 @pytest.mark.parametrize(
@@ -70,6 +73,14 @@ def test_a_case_that_fails_otherwise_is_no_smaller_one(other: Finding) -> None:
     assert min(asked.robots[asked.robots.index(max(asked.robots)) :]) < 6, "smaller ones were asked"
 
 
+def test_what_may_not_be_asked_or_was_asked_is_not_asked() -> None:
+    asked = Asked(lambda robots: JUMPS if robots else None)
+    made = FailureSearch(asked, 5.0, 60.0, may_ask=lambda each: len(each.instance.robots) % 2 == 0)
+    made.run([case(8)])
+    assert (best(made), [each for each in asked.robots if each % 2]) == ((2, JUMPS), [])
+    assert len({*asked.cases}) == len(asked.cases) - 1, "each is asked once, and the smallest once more"
+
+
 def test_without_time_to_shrink_the_first_failure_stays() -> None:
     asked = Asked(lambda robots: JUMPS if robots >= 3 else None)
     made = search(asked, shrink_seconds=0.0)
@@ -78,28 +89,11 @@ def test_without_time_to_shrink_the_first_failure_stays() -> None:
     assert max(before) < 3 < first == again, "and it is asked once more"
 
 
-def test_of_failures_that_hypothesis_takes_for_simpler_the_smallest_is_kept_and_of_equals_the_last() -> None:
-    asked = Asked(lambda robots: JUMPS if robots else None)
-    sized = FailureSearch(asked, 5.0, 60.0)
-    sized.run(st.integers(0, MOST).map(lambda number: case(MOST + 2 - number if number > 1 else 0)), 100, 1)
-    assert best(sized) == (1, JUMPS)
-    named = FailureSearch(lambda each, _: Outcome(each, JUMPS if int(each.name) >= 3 else None), 5.0, 60.0)
-    named.run(st.integers(0, 99).map(lambda number: replace(case(2), name=str(number))), 100, 1)
-    assert named.best is not None
-    assert named.best.case.name == "3"
-
-
 def test_smaller_failures_are_looked_for_until_the_time_is_over(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = Asked(lambda robots: JUMPS if robots >= 9 else None)
     monkeypatch.setattr(shrinking, "monotonic", lambda: 100.0 + 10 * len(asked.robots))
     search(asked, shrink_seconds=25.0)
     assert asked.limits.count(None) == len(asked.limits) - 3
-
-
-def test_hypothesis_prints_nothing(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr(engine, "MAX_SHRINKING_SECONDS", 0)
-    assert best(search(Asked(lambda robots: JUMPS if robots >= 3 else None))) == (3, JUMPS)
-    assert capsys.readouterr() == ("", "")
 
 
 @pytest.mark.parametrize("finding", [JUMPS, NO_ANSWER])

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 from tests.oracle.formats.foreign_files import INSTANCE
 from tests.oracle.running import Run
 from tests.profiles import draws, rest_in
@@ -15,20 +16,23 @@ from tests.profiles import draws, rest_in
 import carp_reference
 from carp_optimum.optimum import optimum
 from carp_spec import Carp, Instance, Refusal, Resource, ResourceGraph, Robot, Solution
-from carproof.conform.asking.random_cases import classical_instances
+from carp_spec.permutations import splitmix64
+from carproof.conform.asking.random_cases import classical_case
 from carproof.conform.levels import Level
 from carproof.conform.programs.function import Function
 from carproof.conform.run import Options, conform
 from carproof.formats.movingai import movingai_instance, read_map, read_scenario
 from carproof.formats.movingai_writer import is_classical, write_movingai
+from carproof.testing.random_instances import Draw
 
 PLANNER = [sys.executable, "-I", "-S", str(Path(__file__).parent / "grid_planner.py")]
 FILES = ["{map}", "{scen}", "{agents}"]
 
 
 @settings(max_examples=draws(200))
-@given(instance=classical_instances())
-def test_what_is_drawn_is_classical_and_survives_the_way_to_files_and_back(instance: Instance) -> None:
+@given(st.integers(0, 2**64 - 1))
+def test_what_is_drawn_is_classical_and_survives_the_way_to_files_and_back(seed: int) -> None:
+    instance = classical_case(Draw(splitmix64(seed))).instance
     assert is_classical(instance)
     files = write_movingai(instance)
     grid = read_map(files.map)
