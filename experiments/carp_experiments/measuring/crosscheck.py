@@ -1,8 +1,7 @@
-"""`carproof dev crosscheck`: both planners asked random questions, until the first difference, which is shrunk."""
+"""`carproof dev crosscheck`: both planners asked random questions up to the first difference, which is made smaller."""
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
-from itertools import chain, repeat
+from dataclasses import dataclass
 from typing import Any
 
 import click
@@ -10,29 +9,23 @@ import msgspec
 
 import carp_optimized
 import carp_reference
-from carp_spec import Instance, Neighbourhood, Planner, RobotId, Solution
-from carp_spec.documents.instances import instance_document
+from carp_spec import Instance, Solution
 from carp_spec.documents.solutions import solution_document
 from carproof.command_line.answer import Answer
-from carproof.command_line.files import Output, hypothesis_elsewhere, print_document
+from carproof.command_line.files import Output, print_document
 from carproof.command_line.options import listed, output_options
 from carproof.command_line.tables import print_line
-from carproof.extras import require
+from carproof.conform.cases import Case, request_fields
+from carproof.conform.smaller import smallest
 from carproof.progress import progress
-from carproof.testing.random_instances import Draw, Question, draw_question
-
-MOST_NUMBERS = 400  # a question is drawn with fewer
+from carproof.testing.random_instances import Question, question
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
-    """A question and the two answers: `plan` if there is no robot, else `add` to `before` at `now`."""
+class Answers:
+    """What both planners answer to a question: `plan`, or `add` for a robot in a fleet under way."""
 
-    instance: Instance
-    planner: Planner
-    robot: RobotId | None
-    before: Solution | None
-    now: int
+    case: Case
     reference: Solution
     optimized: Solution
 
@@ -49,12 +42,11 @@ def command(count: int, seed: int, output: Output) -> Answer:
     """Ask both engines the same questions, and stop at the first difference.
 
     Random instances are planned by every planner that both engines have, and robots are added to fleets under way. A
-    difference is shrunk; its document holds the question and both answers.
+    difference is made smaller; its document holds the question, as a request, and both answers.
 
     Exit codes: 0 no difference, 1 a difference, 2 bad usage.
     """
-    require("hypothesis")
-    with hypothesis_elsewhere(), progress("asking both engines", count) as advance:
+    with progress("asking both engines", count) as advance:
         difference = first_difference(count, seed, advance)
     written = msgspec.json.encode(document(difference)) + b"\n"
     if output.write(written):
@@ -64,62 +56,47 @@ def command(count: int, seed: int, output: Output) -> Answer:
     return Answer.of(difference is None)
 
 
-def first_difference(count: int, seed: int, advance: Callable[[], None] = lambda: None) -> Difference | None:
-    """Ask both engines random questions; returns the first on which they differ, shrunk by hypothesis."""
-    import hypothesis  # noqa: PLC0415 - slow to load
-    from hypothesis import strategies as st  # noqa: PLC0415
-
-    found: list[Difference] = []
-    options = hypothesis.settings(
-        max_examples=count,
-        deadline=None,
-        database=None,
-        derandomize=False,
-        suppress_health_check=list(hypothesis.HealthCheck),
-        report_multiple_bugs=False,
-    )
-
-    @hypothesis.seed(seed)
-    @options
-    @hypothesis.given(st.binary(max_size=MOST_NUMBERS))
-    def agree(numbers: bytes) -> None:
-        difference = ask(draw_question(Draw(chain(numbers, repeat(0)))))
+def first_difference(count: int, seed: int, advance: Callable[[], None] = lambda: None) -> Answers | None:
+    """Ask both engines random questions; returns the first on which they differ, made as small as it goes."""
+    for number in range(count):
+        case = case_of(question(seed, number))
+        if differ(case):
+            return ask(smallest(case, differ, lambda: False)[0])
         advance()
-        if difference.reference != difference.optimized:
-            found.append(difference)
-            raise AssertionError
-
-    try:
-        agree()
-    except AssertionError:
-        return found[-1]
     return None
 
 
-def ask(question: Question) -> Difference:
-    """Ask both engines."""
+def differ(case: Case) -> bool:
+    """Whether the engines answer differently."""
+    answers = ask(case)
+    return answers.reference != answers.optimized
+
+
+def case_of(question: Question) -> Case:
+    """The question as a request."""
     subject, planner = question
     if isinstance(subject, Instance):
-        answers = carp_reference.plan(subject, planner), carp_optimized.plan(subject, planner)
-        return Difference(subject, planner, None, None, 0, *answers)
-    assert isinstance(planner, Neighbourhood)  # noqa: S101 - a promise of ours
-    asked = (subject.instance, subject.solution, subject.robot, subject.now, planner)
-    answers = carp_reference.add(*asked), carp_optimized.add(*asked)
-    return Difference(subject.instance, planner, subject.robot, subject.solution, subject.now, *answers)
+        return Case("random", "plan", "plan", subject, planner=planner)
+    return Case("random", "add", "add", subject.instance, subject.solution, subject.robot, subject.now, planner)
 
 
-def document(difference: Difference | None) -> dict[str, Any]:
-    """The question and both answers; `agree` alone where there is no difference."""
-    if difference is None:
+def ask(case: Case) -> Answers:
+    """Ask both engines."""
+    if case.planner is not None and case.op == "plan":
+        both = (engine.plan(case.instance, case.planner) for engine in (carp_reference, carp_optimized))
+    else:
+        fields = (case.instance, case.solution, case.asked_robot, case.now, case.options)
+        both = (engine.add(*fields) for engine in (carp_reference, carp_optimized))
+    return Answers(case, *both)
+
+
+def document(answers: Answers | None) -> dict[str, Any]:
+    """The question as a request, and both answers; `agree` alone where there is no difference."""
+    if answers is None:
         return {"agree": True}
-    planner = {"planner": difference.planner.name, **asdict(difference.planner)}
-    question = {"instance": instance_document(difference.instance), **planner}
-    if difference.before is not None:
-        before = solution_document(difference.before)
-        question |= {"solution": before, "robot": difference.robot, "now": difference.now}
     return {
         "agree": False,
-        "question": question,
-        "reference": solution_document(difference.reference),
-        "optimized": solution_document(difference.optimized),
+        "question": {"op": answers.case.op, **request_fields(answers.case)},
+        "reference": solution_document(answers.reference),
+        "optimized": solution_document(answers.optimized),
     }

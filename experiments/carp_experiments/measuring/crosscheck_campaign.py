@@ -1,8 +1,8 @@
 """A campaign of random small questions to both engines: the reference and the optimised planner must agree on all.
 
-`carproof dev crosscheck` asks the same kind of questions up to the first difference, which it shrinks. This campaign
-can be stopped and continued, and runs on many machines. With stops or groups, searches that count tick by tick are
-compared too.
+`carproof dev crosscheck` asks the same questions up to the first difference, which it makes smaller. This campaign can
+be stopped and continued, and runs on many machines. With stops or groups, searches that count tick by tick are compared
+too.
 """
 
 from collections.abc import Mapping
@@ -12,7 +12,7 @@ import msgspec
 
 import carp_optimized
 from carp_experiments.measuring.blocks import BlockCase, Questions
-from carp_experiments.measuring.crosscheck import Difference, ask, document
+from carp_experiments.measuring.crosscheck import Answers, ask, case_of, document
 from carp_reference.time_expanded import find_plan_by_ticks
 from carp_spec import plan_cost, total_cost
 from carproof.testing.random_instances import GROUPED, SMALL, WITH_STOPS, Mix, question
@@ -42,14 +42,14 @@ def ask_both(block: Block, seed: int, number: int, kind: str | None = None) -> N
     """Ask both engines one question; an engine that fails by an exception differs too."""
     from carp_experiments.measuring.by_ticks import faults_by_ticks  # noqa: PLC0415 - loads the planners
 
-    drawn = question(seed, number, MIXES[kind])
+    case = case_of(question(seed, number, MIXES[kind]))
     try:
-        answers = ask(drawn)
-        faults = [*faults_by_ticks(answers.instance, answers.reference.plans)] if kind == "groups" else []
+        answers = ask(case)
+        faults = [*faults_by_ticks(case.instance, answers.reference.plans)] if kind == "groups" else []
     except Exception as error:  # noqa: BLE001 - whatever it is, it is no answer
         block.differences.append({"number": number, "error": repr(error)})
         return
-    block.cost += total_cost(answers.instance, answers.reference.plans)
+    block.cost += total_cost(case.instance, answers.reference.plans)
     block.planned += len(answers.reference.plans)
     block.unplanned += len(answers.reference.unplanned)
     block.differences += [{"number": number, "by ticks": fault} for fault in faults]
@@ -61,9 +61,9 @@ def ask_both(block: Block, seed: int, number: int, kind: str | None = None) -> N
             block.differences.append({"number": number, "windows": by_windows, "ticks": by_ticks, **document(answers)})
 
 
-def arrivals(answers: Difference) -> tuple[int | None, int | None]:
+def arrivals(answers: Answers) -> tuple[int | None, int | None]:
     """When a robot arrives beside the others of the answer, as the query and a search tick by tick find it."""
-    instance, solution = answers.instance, answers.reference
+    instance, solution = answers.case.instance, answers.reference
     robot = next(iter((*solution.unplanned, *solution.order)))
     others = [plan for plan in solution.plans if plan.robot != robot]
     found = carp_optimized.query(instance, others, robot), find_plan_by_ticks(instance, others, robot)

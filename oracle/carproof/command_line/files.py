@@ -4,7 +4,7 @@ import os
 import secrets
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias, TypeVar
@@ -200,16 +200,3 @@ def print_document(data: bytes) -> None:
     sys.stdout.flush()
     sys.stdout.buffer.write(data)
     sys.stdout.buffer.flush()
-
-
-@contextmanager
-def hypothesis_elsewhere() -> Iterator[None]:
-    """Let hypothesis keep its files in a temporary folder, not in the user's; where nothing can be written, nowhere."""
-    from tempfile import TemporaryDirectory  # noqa: PLC0415 - loaded only where used
-
-    from hypothesis.configuration import set_hypothesis_home_dir  # noqa: PLC0415
-
-    with ExitStack() as until_the_end:
-        with suppress(OSError):
-            set_hypothesis_home_dir(until_the_end.enter_context(TemporaryDirectory(prefix="carproof-")))
-        yield

@@ -101,16 +101,12 @@ GROUPED = Mix(groups=(1, 2, 3), followings=("allowed", "allowed", "forbidden"))
 
 
 def question(seed: int, number: int, mix: Mix = SMALL) -> Question:
-    """The question of that number."""
-    return draw_question(Draw(splitmix64(next(splitmix64(seed)) + number)), mix)
-
-
-def draw_question(draw: Draw, mix: Mix = SMALL) -> Question:
-    """An instance and a planner, or a fleet under way and a robot to add.
+    """The question of that number: an instance and a planner, or a fleet under way and a robot to add.
 
     Durations, capacities, releases, paces, both kinds of ids and graphs, both policies and all options are mixed.
     Starts and goals may be shared, the same, or out of reach of each other.
     """
+    draw = Draw(splitmix64(next(splitmix64(seed)) + number))
     instance = draw_instance(draw, mix)
     if draw.happens(4):
         return draw_fleet(draw, instance), draw_neighbourhood(draw)

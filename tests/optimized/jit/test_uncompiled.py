@@ -63,7 +63,7 @@ def test_a_planted_difference_is_found_and_made_small(monkeypatch: pytest.Monkey
     monkeypatch.setattr(carp_optimized, "plan", forgetful)
     difference = first_difference(200, seed=1)
     assert difference is not None
-    assert len(difference.instance.robots) == 1
+    assert len(difference.case.instance.robots) == 1
     assert difference.reference.plans
     assert not difference.optimized.plans
 

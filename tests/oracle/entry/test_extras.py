@@ -27,7 +27,6 @@ FINDS = {
     "bound town.json": "python-sat",
     "gap town.json": "python-sat",
     "conform true": "python-sat",
-    "dev crosscheck": "hypothesis",
     "experiment quality --quick": "joblib",
 }
 DEPOT = ROOT / "oracle/carproof/examples/depot"
@@ -45,6 +44,7 @@ BASE = [
     "generate grid --width 3 --height 3 --robots 2 -o grid.json",
     f"convert {DEPOT}.map {DEPOT}.scen -o depot.json",
     "rules",
+    "dev crosscheck --examples 3",
 ]
 
 

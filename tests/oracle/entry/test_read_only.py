@@ -48,15 +48,6 @@ def test_what_is_compiled_is_not_kept_and_that_is_said_once(folder: Path) -> Non
     assert done.stderr.count("\n") == 1
 
 
-def test_random_cases_are_drawn(folder: Path) -> None:
-    draws = (
-        "import hypothesis as h; from carproof.command_line.files import hypothesis_elsewhere\n"
-        "with hypothesis_elsewhere(): print(h.find(h.strategies.integers(), lambda n: n > 99))"
-    )
-    done = run_read_only(folder, sys.executable, "-c", draws)
-    assert (done.returncode, done.stdout) == (0, "100\n"), done.stderr
-
-
 def test_a_planner_that_reads_files_needs_a_place_for_them(folder: Path) -> None:
     command = [sys.executable, "-m", "carproof", "conform", "--one-shot", "--", "true", "{instance}"]
     done = run_read_only(folder, "env", "NUMBA_DISABLE_JIT=1", *command)
