@@ -3,7 +3,8 @@
 Numba passes an array as seven words, and a named tuple of sixty arrays as sixty times that: making them from Python's
 objects takes longer than a query, and so does compiling functions that hand them on. A `Native` keeps a table of the
 addresses and sizes of the arrays, and a compiled function gets the address of the table. `state.windows.start[slot]`
-then means what it means in Python, except that no index counts from the end. With NUMBA_BOUNDSCHECK=1 each is checked.
+then means what it means in Python, except that no index counts from the end. With NUMBA_BOUNDSCHECK=1 each is checked,
+also uncompiled.
 
 No two fields may share an array: the compiled code reads again only what a write to the same field can have changed.
 """
@@ -39,6 +40,29 @@ ARRAYS: dict[object, tuple[type[np.generic], int]] = {
     ShortTable: (np.int16, 2),
     LongTable: (np.int64, 2),
 }
+
+
+class _Checked(np.ndarray[Any, Any]):
+    """An array in which no index counts from the end."""
+
+    def __getitem__(self, index: Any) -> Any:
+        return super().__getitem__(_not_from_the_end(index))
+
+    def __setitem__(self, index: Any, value: Any) -> None:
+        super().__setitem__(_not_from_the_end(index), value)
+
+
+def _not_from_the_end(index: Any) -> Any:
+    if isinstance(index, int | np.integer) and index < 0:
+        raise IndexError(f"the index {index} counts from the end")
+    return index
+
+
+def _checked(fields: Any) -> Any:
+    """The named tuple with such arrays."""
+    if isinstance(fields, tuple):
+        return fields._make(map(_checked, fields))  # type: ignore[attr-defined]
+    return fields.view(_Checked) if isinstance(fields, np.ndarray) else fields
 
 
 def is_uncompiled() -> bool:
@@ -155,7 +179,8 @@ def dereference(kind: type[F]) -> Callable[[Native[F]], F]:
         return reference(address), lower
 
     if is_uncompiled():
-        return lambda native: native.fields
+        is_checked = bool(numba.config.BOUNDSCHECK)  # type: ignore[attr-defined]
+        return lambda native: cast("F", _checked(native.fields)) if is_checked else native.fields
     return cast("Callable[[Native[F]], F]", intrinsic(at))
 
 

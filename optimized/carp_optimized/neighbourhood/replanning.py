@@ -26,7 +26,6 @@ from carp_optimized.jit.compiling import compiled, inlined
 from carp_optimized.queries.guides import guide_slot, key_of, toll_of
 from carp_optimized.queries.search import find_plan_by
 from carp_optimized.state.arrays import (
-    GROUPED,
     KEPT,
     NEVER,
     NONE,
@@ -38,6 +37,7 @@ from carp_optimized.state.arrays import (
     State,
     Work,
 )
+from carp_optimized.state.groups import is_grouped
 from carp_optimized.state.records import same_plan
 from carp_optimized.windows.fitting import end_of_run, has_same_order, plan_fits
 from carp_optimized.windows.reserving import evict, reserve, reserve_but, withdraw, withdraw_but
@@ -71,8 +71,8 @@ def note_freed(state: State, record: int, head: int, tail: int) -> None:
         enter = int(records.enter[k]) - state.gap
         leave = int(records.enter[k + 1]) if k < last else int(records.leave[record])
         leave = min(leave + state.gap, NEVER)
-        is_grouped = graph.group.size > 0 and (graph.capacity[resource] == GROUPED or graph.capacity[source] == GROUPED)
-        regions |= note_stay(state, resource, enter, leave, SEVERAL if is_grouped else source)
+        meets_groups = is_grouped(graph, resource) or is_grouped(graph, source)
+        regions |= note_stay(state, resource, enter, leave, SEVERAL if meets_groups else source)
         for j in range(int(graph.groups_first[resource]), int(graph.groups_first[resource + 1])):
             group = int(graph.group[j])
             for i in range(int(graph.members_first[group]), int(graph.members_first[group + 1])):

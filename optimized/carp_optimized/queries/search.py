@@ -9,7 +9,6 @@ from carp_optimized.queries.ways_back import CUT_OFF, FEWEST, look_back
 from carp_optimized.state.arrays import (
     ASKED,
     FURTHER,
-    GROUPED,
     LARGEST,
     LOW,
     NEVER,
@@ -19,6 +18,7 @@ from carp_optimized.state.arrays import (
     UNKNOWN,
     State,
 )
+from carp_optimized.state.groups import is_grouped
 from carp_optimized.state.records import cost_of, start_record, write_record
 from carp_optimized.windows.fitting import (
     STANDING,
@@ -323,7 +323,7 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
             state.search.expansions[0] = expansions
             return expansions
         source = int(windows.source[last])
-        exchanges = several and (graph.capacity[resource] != 1 or graph.capacity[source] == GROUPED)
+        exchanges = several and (graph.capacity[resource] != 1 or is_grouped(graph, source))
         to_go = toll & ~LOW
         for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
             target = int(graph.target[edge])

@@ -4,10 +4,16 @@ from carp_optimized.jit.compiling import compiled, inlined
 from carp_optimized.state.arrays import GROUPED, NEVER, NONE, Graph
 
 
+@inlined
+def is_grouped(graph: Graph, resource: int) -> bool:
+    """Whether the resource, or `NONE`, is one of a group."""
+    return resource != NONE and graph.capacity[resource] == GROUPED
+
+
 @compiled
 def is_within(graph: Graph, group: int, resource: int) -> bool:
     """Whether the resource, or `NONE`, is one of the group."""
-    if resource == NONE or graph.capacity[resource] != GROUPED:
+    if not is_grouped(graph, resource):
         return False
     for k in range(int(graph.groups_first[resource]), int(graph.groups_first[resource + 1])):
         if graph.group[k] == group:
@@ -18,7 +24,7 @@ def is_within(graph: Graph, group: int, resource: int) -> bool:
 @compiled
 def share_group(graph: Graph, one: int, other: int, most: int) -> bool:
     """Whether two resources, or `NONE`, lie in one group with room for at most so many."""
-    if one == NONE or graph.capacity[one] != GROUPED:
+    if not is_grouped(graph, one):
         return False
     for k in range(int(graph.groups_first[one]), int(graph.groups_first[one + 1])):
         group = int(graph.group[k])

@@ -26,10 +26,11 @@ from carp_spec import Instance, Resource, ResourceGraph, Robot
 
 fleet = PlannedFleet(Instance(ResourceGraph((Resource("a"),), ()), (Robot("r", "a", "a"),)))
 try:
-    passes.shortest(fleet.native, 1)
+    passes.shortest(fleet.native, {})
 except IndexError:
     print("an index out of bounds is noticed")
 """
+NOTICED = "an index out of bounds is noticed\n"
 
 
 def python(*arguments: str, **variables: str) -> subprocess.CompletedProcess[str]:
@@ -41,8 +42,8 @@ def python(*arguments: str, **variables: str) -> subprocess.CompletedProcess[str
 
 @pytest.mark.ci
 def test_the_engines_agree_with_compilation_switched_off() -> None:
-    done = python("-c", CROSSCHECK.format(60), NUMBA_DISABLE_JIT="1")
-    assert done.stdout == "None\n", done.stderr
+    done = python("-c", BEYOND.format(-1) + CROSSCHECK.format(200), NUMBA_DISABLE_JIT="1", NUMBA_BOUNDSCHECK="1")
+    assert done.stdout == NOTICED + "None\n", done.stderr
 
 
 @pytest.mark.nightly
@@ -52,8 +53,8 @@ def test_no_index_is_out_of_bounds() -> None:
         "NUMBA_CACHE_DIR": str(ROOT / "build/bounds-checked"),
         "NUMBA_DISABLE_JIT": "0",
     }
-    done = python("-c", BEYOND + CROSSCHECK.format(300), **checked)
-    assert done.stdout == "an index out of bounds is noticed\nNone\n", done.stderr
+    done = python("-c", BEYOND.format(1) + CROSSCHECK.format(300), **checked)
+    assert done.stdout == NOTICED + "None\n", done.stderr
 
 
 def test_a_planted_difference_is_found_and_made_small(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -71,7 +72,7 @@ def test_a_planted_difference_is_found_and_made_small(monkeypatch: pytest.Monkey
 def test_the_tests_that_only_run_uncompiled_pass() -> None:
     quietly = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-W", "ignore::RuntimeWarning"]
     files = [f"tests/optimized/{name}.py" for name in UNCOMPILED]
-    done = python("-m", "pytest", *quietly, *files, NUMBA_DISABLE_JIT="1")
+    done = python("-m", "pytest", *quietly, *files, NUMBA_DISABLE_JIT="1", NUMBA_BOUNDSCHECK="1")
     assert done.returncode == 0, done.stdout
     assert "skipped" not in done.stdout
     assert "passed" in done.stdout
