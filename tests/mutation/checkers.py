@@ -163,6 +163,7 @@ LEFT_OUT = (
     "keep_a_robot_waiting",
     "large_formula",
     "with_the_first_look",
+    "in_a_time_that_hardly_grows",
 )
 LONGEST = 0.7
 EXAMPLES = 40

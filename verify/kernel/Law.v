@@ -265,8 +265,8 @@ Definition Has_ended (p : plan) (now : Z) : Prop :=
   exists before last, visits p = before ++ [last] /\ Ended last now.
 
 (** fleet/history: a plan made at the tick [now] keeps every visit that the plan followed until then had entered: the
-    last of them is entered at the same tick and left no earlier than now, those before it are unchanged. A plan that
-    has ended by now is unchanged. *)
+    last of them is entered at the same tick and left no earlier than now, those before it are unchanged. A plan whose
+    last visit is left by now is unchanged. *)
 Record Keeps_history (followed made : plan) (now : Z) : Prop := {
   keeps_visits : forall n v, nth_error (history followed now) n = Some v ->
     exists again, nth_error (visits made) n = Some again /\

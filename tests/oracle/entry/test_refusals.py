@@ -206,6 +206,7 @@ REFUSED = (
     ("audit town.json unordered.json", "[solution/order]"),
     ("bound town.json --plans east-plans.json", "plans to compare with must break no rule"),
     ("bound town.json --plans comma.json", "Error: comma.json: $: "),
+    ("bound town.json --from csv", "--from concerns the file of --plans"),
     ("bound --plans plans.json", "Give INSTANCE, or --map and --scen."),
     (
         "bound late.json --steps 1",

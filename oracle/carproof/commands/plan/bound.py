@@ -67,6 +67,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     if (instance is None) == (benchmark is None):
         raise click.UsageError("Give INSTANCE, or --map and --scen.")
+    if format is not None and plans is None:
+        raise click.UsageError("--from concerns the file of --plans.")
     require_limits(seconds=seconds, steps=steps)
     given = Problem(instance, benchmark)
     problem = given.read_instance()

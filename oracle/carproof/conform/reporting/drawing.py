@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from string import ascii_letters, ascii_uppercase, digits
 
-from carp_spec import Instance, Plan, ResourceId
+from carp_spec import Instance, Plan, ResourceId, Robot
 
 MOST_TICKS = 60
 MOST_CELLS = 60
@@ -24,14 +24,23 @@ def map_drawing(instance: Instance) -> str:
         if each.x is not None and each.y is not None
     }
     legend = [
-        f"{number % 10}: robot {robot.id} goes from {robot.start} to {robot.goal}"
+        f"{number % 10}: robot {robot.id} goes from {_way(robot)}"
         + (f" ({ascii_uppercase[number]})" if number < len(ascii_uppercase) else "")
         for number, robot in enumerate(instance.robots)
+    ]
+    legend += [
+        f"group {each.id}, capacity {each.capacity}: {', '.join(map(str, each.resources))}"
+        for each in instance.graph.groups
     ]
     if cells and len(cells) == len(instance.graph.resources):
         return "\n".join([*legend, "", *_rows(cells)]) + "\n"
     moves = [f"{source} -> {', '.join(map(str, instance.graph.successors[source]))}" for source in instance.graph.index]
     return "\n".join([*legend, "", *moves]) + "\n"
+
+
+def _way(robot: Robot) -> str:
+    """The robot's start and stops."""
+    return " to ".join(map(str, (robot.start, *(stop.resource for stop in robot.stops))))
 
 
 def _rows(cells: Mapping[tuple[int, int], str]) -> list[str]:
