@@ -178,20 +178,21 @@ def execution_case(claims: Claims = EVERYTHING) -> DrawCase:
 def random_cases(ops: Sequence[str], level: Level, whole: bool, claims: Claims = EVERYTHING) -> Mapping[str, DrawCase]:
     """What draws a case of each op that is offered."""
     mix = _claimed(MIX, claims)
+    maybe_nobody = replace(mix, robots=(0, *mix.robots))
     if whole:
-        return {"plan": partial(_plan, mix, [None])}
+        return {"plan": partial(_plan, maybe_nobody, [None])}
     planners = EXACT_PLANNERS if level >= Level.EXACT else (Carp(),)
     under_way = "now" not in claims.without
     by_op: dict[str, DrawCase] = {
         "query": partial(_query, mix, under_way),
-        "plan": partial(_plan, mix, planners),
+        "plan": partial(_plan, maybe_nobody, planners),
         "add": partial(_addition, mix, under_way),
         "check": partial(_check, mix),
         "polish": partial(_polish, mix),
-        "bound": partial(_best, "bound", mix),
+        "bound": partial(_best, "bound", maybe_nobody),
     }
     if level >= Level.COMPLETE:
-        by_op["optimum"] = partial(_best, "optimum", mix)
+        by_op["optimum"] = partial(_best, "optimum", maybe_nobody)
     return {op: cases for op, cases in by_op.items() if op in ops}
 
 

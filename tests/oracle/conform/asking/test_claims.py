@@ -53,6 +53,10 @@ def test_a_planner_that_fails_where_a_goal_cannot_be_reached_is_asked_only_for_p
     assert all(is_solvable(case) for case in asked)
 
 
+def test_a_planner_that_fails_where_there_is_no_robot_does_not_conform() -> None:
+    assert conform(fails_where(lambda instance: not instance.robots), whole(Claims())).conforms is False
+
+
 def test_only_a_claimed_feature_is_in_a_random_case() -> None:
     subject = Tampered(as_it_is)
     asked = subject.cases
