@@ -50,7 +50,7 @@ FOOTPRINTS = (
 OUTCOMES = ("oracle/conform/judging/test_outcome",)
 LEMMAS = ("verify/lemmas/test_lemmas", "verify/lemmas/test_formulas")
 TESTS: Mapping[str, Sequence[str]] = {
-    "carp_verify.bound.verify": BOUNDS,
+    "carp_verify.bound.verify": (*BOUNDS, "verify/bound/test_stops"),
     "carp_verify.bound.least": (*BOUNDS, "verify/bound/test_stops"),
     "carp_verify.bound.network": (*BOUNDS, "verify/bound/test_stops"),
     "carp_verify.bound.tariff": BOUNDS,

@@ -7,7 +7,19 @@ from tests.spec.making import plan_of
 
 import carp_reference
 from carp_reference.certifying import Certifier
-from carp_spec import AfterGoal, Instance, Plan, Refusal, Resource, ResourceGraph, Robot, RobotId, Solution, Stop
+from carp_spec import (
+    AfterGoal,
+    Group,
+    Instance,
+    Plan,
+    Refusal,
+    Resource,
+    ResourceGraph,
+    Robot,
+    RobotId,
+    Solution,
+    Stop,
+)
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_verify.query.verify import verify_query
 
@@ -71,6 +83,8 @@ WEST = Robot("s", "d", "a")
 WESTWARDS = way("s", "d0 c1 b3 a4", 5)
 VANISHING = town("vanish", EAST, WEST)
 PARKING = town("park", EAST, replace(WEST, stops=(Stop("e"),)))
+SWAPPED = town("vanish", Robot("r", "a", "b"), Robot("s", "b", "c"))
+TOGETHER = replace(SWAPPED.graph, groups=(Group("a or c", ("a", "c"), 1),))
 HOME = town("vanish", Robot("r", "b", "b"), WEST)
 QUESTIONS = {
     "alone": beside(VANISHING, "r"),
@@ -98,6 +112,9 @@ QUESTIONS = {
     ),
     "in the way": beside(VANISHING, "r", WESTWARDS, way("r", "a0 b4 c5 d7", 8), now=4),
     "in the way before it left": beside(VANISHING, "r", WESTWARDS, way("r", "a0 b5 c6 d8", 9), now=5),
+    "an exchange with a robot that moves into its group": beside(
+        replace(SWAPPED, graph=TOGETHER), "r", way("s", "b0 c2", 4)
+    ),
     "at its goal": beside(HOME, "r"),
     "may leave its goal now": beside(HOME, "r", now=1),
     "stayed too long at its goal": beside(HOME, "r", way("s", "d0 c6 b8 a9", 10), now=3),
