@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 from typing import TypeVar
 
@@ -15,6 +16,7 @@ from msgspec import structs
 
 from carp_reference.execution import order_of
 from carp_spec import (
+    Group,
     Instance,
     Plan,
     Refusal,
@@ -256,6 +258,35 @@ def _fewer_edges(best: Smallest) -> Iterator[Case]:
         yield _with_graph(best.case, edges=tuple(edge for edge in best.case.instance.graph.edges if edge not in gone))
 
 
+def _fewer_groups(best: Smallest) -> Iterator[Case | None]:
+    """Take groups, then resources of one, then units of its capacity."""
+    groups = best.case.instance.graph.groups
+    for gone in _chunks([group.id for group in groups]):
+        yield _with_graph(
+            best.case, groups=tuple(each for each in best.case.instance.graph.groups if each.id not in gone)
+        )
+    for group in groups:
+        for gone in _chunks(group.resources):
+            yield _with_group(best.case, group.id, partial(_without, gone=gone))
+        for step in _steps(group.capacity, 1):
+            yield _with_group(best.case, group.id, partial(_with_less_room, step=step))
+
+
+def _with_group(case: Case, id: ResourceId, change: Callable[[Group], Group]) -> Case:
+    groups = (change(each) if each.id == id else each for each in case.instance.graph.groups)
+    return _with_graph(case, groups=tuple(groups))
+
+
+def _without(group: Group, gone: frozenset[ResourceId]) -> Group:
+    """The group without some resources; one stays at least."""
+    left = tuple(each for each in group.resources if each not in gone)
+    return replace(group, resources=left or group.resources)
+
+
+def _with_less_room(group: Group, step: int) -> Group:
+    return replace(group, capacity=max(1, group.capacity - step))
+
+
 def _simpler(best: Smallest) -> Iterator[Case]:
     """Let robots vanish and edges go both ways; let a robot without plan end where it starts; number from 0 on."""
     robots = [*best.case.instance.robot]
@@ -393,6 +424,7 @@ KINDS: Sequence[Callable[[Smallest], Iterator[Case | None]]] = (
     _shorter_ways,
     _fewer_resources,
     _fewer_edges,
+    _fewer_groups,
     _simpler,
     _fewer_stops,
     _smaller_numbers,

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from carp_spec import Robot, Solution
+from carp_spec import Group, Robot, Solution
 from carproof.conform import shrinking
 from carproof.conform.asking.smoke import row
 from carproof.conform.cases import Case
@@ -108,6 +108,23 @@ def test_a_robot_that_a_solution_names_and_the_instance_does_not_have_stays_whil
     named = replace(case(2), op="check", solution=Solution((), (), ("r0", "r1", "nobody")))
     found, is_minimal = smallest(named, lambda each: "nobody" in each.solution.unplanned, lambda: False)
     assert (len(found.instance.graph.resources), found.solution.unplanned, is_minimal) == (0, ("nobody",), True)
+
+
+def test_of_groups_resources_and_room_stay_that_the_failure_needs() -> None:
+    grouped = case(2)
+    ids = tuple(grouped.instance.graph.index)
+    groups = Group("needed", ids, 5), Group("not", ids[:1], 3)
+    graph = replace(grouped.instance.graph, groups=groups)
+    grouped = replace(grouped, instance=replace(grouped.instance, graph=graph))
+    found, is_minimal = smallest(
+        grouped,
+        lambda each: any(
+            group.capacity > 1 and ids[0] in group.resources and group.id == "needed"
+            for group in each.instance.graph.groups
+        ),
+        lambda: False,
+    )
+    assert (found.instance.graph.groups, is_minimal) == ((Group("needed", ids[:1], 2),), True)
 
 
 @pytest.mark.parametrize(
