@@ -16,8 +16,10 @@ from msgspec import structs
 
 from carp_reference.execution import order_of
 from carp_spec import (
+    Carp,
     Group,
     Instance,
+    Neighbourhood,
     Plan,
     Refusal,
     Resource,
@@ -288,8 +290,10 @@ def _with_less_room(group: Group, step: int) -> Group:
 
 
 def _simpler(best: Smallest) -> Iterator[Case]:
-    """Let robots vanish and edges go both ways; let a robot without plan end where it starts; number from 0 on."""
+    """Ask for CARP or usual options; let robots vanish, edges go both ways, who has no plan stay; number from 0 on."""
     robots = [*best.case.instance.robot]
+    if best.case.planner is not None:
+        yield replace(best.case, planner=Carp() if best.case.op == "plan" else Neighbourhood())
     yield _made(best.case, replace(best.case.instance, after_goal="vanish"))
     edges = {frozenset(edge): edge for edge in best.case.instance.graph.edges}
     yield _with_graph(best.case, edges=tuple(edges.values()), directed=False)

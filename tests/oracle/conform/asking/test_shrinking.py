@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from carp_spec import Group, Robot, Solution
+from carp_spec import Carp, Group, Neighbourhood, Planner, Robot, Solution
 from carproof.conform import shrinking
 from carproof.conform.asking.smoke import row
 from carproof.conform.cases import Case
@@ -108,6 +108,13 @@ def test_a_robot_that_a_solution_names_and_the_instance_does_not_have_stays_whil
     named = replace(case(2), op="check", solution=Solution((), (), ("r0", "r1", "nobody")))
     found, is_minimal = smallest(named, lambda each: "nobody" in each.solution.unplanned, lambda: False)
     assert (len(found.instance.graph.resources), found.solution.unplanned, is_minimal) == (0, ("nobody",), True)
+
+
+@pytest.mark.parametrize(("op", "simple"), [("plan", Carp()), ("add", Neighbourhood())])
+def test_the_simplest_planner_that_fails_is_asked(op: str, simple: Planner) -> None:
+    asked = replace(case(1), op=op, planner=Neighbourhood(m=3, sample=2, seed=5))
+    assert smallest(asked, lambda _: True, lambda: False)[0].planner == simple
+    assert smallest(asked, lambda each: each.planner == asked.planner, lambda: False)[0].planner == asked.planner
 
 
 def test_of_groups_resources_and_room_stay_that_the_failure_needs() -> None:
