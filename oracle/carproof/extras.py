@@ -40,4 +40,5 @@ def require(*modules: str) -> None:
     """Raise `ModuleNotFoundError` before long work that would end with it."""
     for module in modules:
         if find_spec(module) is None:
-            raise ModuleNotFoundError(name=module)
+            missing = ModuleNotFoundError(name=module)
+            raise ModuleNotFoundError(f"carproof {advice(missing)}", name=module)

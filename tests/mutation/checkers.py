@@ -107,7 +107,7 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carproof.conform.judging.claims": ("oracle/conform/asking/test_claims",),
     "carproof.conform.judging.by_kernel": ("oracle/conform/judging/test_kernel",),
     "carproof.conform.shrinking": ("oracle/conform/asking/test_shrinking",),
-    "carproof.conform.smaller": ("oracle/conform/asking/test_large",),
+    "carproof.conform.smaller": ("oracle/conform/asking/test_large", "oracle/conform/asking/test_shrinking"),
     "carproof.conform.asking.ladder": ("oracle/conform/asking/test_large",),
     "carproof.conform.judging.driving": ("oracle/conform/programs/test_executors",),
 }

@@ -15,7 +15,7 @@ from carproof.command_line.answer import Answer
 from carproof.command_line.files import Output, print_document
 from carproof.command_line.options import listed, output_options
 from carproof.command_line.tables import print_line
-from carproof.conform.cases import Case, request_fields
+from carproof.conform.cases import Case, planned_by, request_fields
 from carproof.conform.smaller import smallest
 from carproof.progress import progress
 from carproof.testing.random_instances import Question, question
@@ -82,12 +82,7 @@ def case_of(question: Question) -> Case:
 
 def ask(case: Case) -> Answers:
     """Ask both engines."""
-    if case.planner is not None and case.op == "plan":
-        both = (engine.plan(case.instance, case.planner) for engine in (carp_reference, carp_optimized))
-    else:
-        fields = (case.instance, case.solution, case.asked_robot, case.now, case.options)
-        both = (engine.add(*fields) for engine in (carp_reference, carp_optimized))
-    return Answers(case, *both)
+    return Answers(case, planned_by(carp_reference, case), planned_by(carp_optimized, case))
 
 
 def document(answers: Answers | None) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
 from carp_spec import (
+    Carp,
     Instance,
     Neighbourhood,
     Plan,
@@ -123,6 +124,13 @@ def renamed(instance: Instance, name: Callable[[int], ResourceId]) -> Instance:
 def engine_for(instance: Instance) -> Engine:
     """The planner with which answers are compared: the reference, or the compiled one where that would take long."""
     return engine_named(None if is_large(instance) else "reference")
+
+
+def planned_by(engine: Engine, case: Case) -> Solution:
+    """The engine's answer to a question `plan` or `add`."""
+    if case.op == "plan":
+        return engine.plan(case.instance, case.planner or Carp())
+    return engine.add(case.instance, case.solution, case.asked_robot, case.now, case.options)
 
 
 def request_of(case: Case) -> dict[str, Any]:

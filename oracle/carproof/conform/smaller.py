@@ -260,7 +260,7 @@ def _fewer_edges(best: Smallest) -> Iterator[Case]:
         yield _with_graph(best.case, edges=tuple(edge for edge in best.case.instance.graph.edges if edge not in gone))
 
 
-def _fewer_groups(best: Smallest) -> Iterator[Case | None]:
+def _fewer_groups(best: Smallest) -> Iterator[Case]:
     """Take groups, then resources of one, then units of its capacity."""
     groups = best.case.instance.graph.groups
     for gone in _chunks([group.id for group in groups]):

@@ -42,8 +42,8 @@ from carproof.testing.random_instances import (
     last_tick,
 )
 
-MIX = Mix(robots=(1, 2, 3, 4))
 MOST_ROBOTS = 4
+MIX = Mix(robots=range(1, MOST_ROBOTS + 1))
 MOST_STOPS = 3
 SERVICES = (0, 0, 1, 2, 5)
 LATEST = 4

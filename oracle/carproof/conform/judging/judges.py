@@ -24,7 +24,7 @@ from carp_spec.polish_rules import is_kept
 from carp_verify.bound.rules import ContradictionError
 from carproof.command_line.output import shown_plan
 from carproof.conform.answers import Answer
-from carproof.conform.cases import POLISH_ROUNDS, Case, engine_for
+from carproof.conform.cases import POLISH_ROUNDS, Case, engine_for, planned_by
 from carproof.conform.findings import Finding, broken, wrong
 from carproof.conform.judging.driving import execution_findings
 from carproof.conform.judging.optimum import bound_findings, complete_findings, optimum_findings, plan_cost_findings
@@ -161,7 +161,7 @@ def _add_findings(case: Case, after: Solution, level: Level) -> Iterator[Finding
     if level >= Level.COMPLETE_IN_CONTEXT:
         yield from _against_keeping(case, after, level)
     if level >= Level.EXACT:
-        expected = engine_for(case.instance).add(case.instance, case.solution, case.asked_robot, case.now, case.options)
+        expected = planned_by(engine_for(case.instance), case)
         yield from _same_solution(after, expected, "add")
 
 

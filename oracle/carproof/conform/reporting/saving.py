@@ -9,13 +9,13 @@ from xml.sax.saxutils import escape
 import click
 import msgspec
 
-from carp_spec import Carp, Refusal, Solution, judge, plan_cost, violations_of
+from carp_spec import Refusal, Solution, judge, plan_cost, violations_of
 from carp_spec.documents.instances import instance_document, write_instance
 from carp_spec.documents.solutions import solution_of, write_solution
 from carp_spec.execution.traces import Trace
 from carproof.command_line.files import write_whole
 from carproof.command_line.tables import printable
-from carproof.conform.cases import POLISH_ROUNDS, Case, request_fields
+from carproof.conform.cases import POLISH_ROUNDS, Case, planned_by, request_fields
 from carproof.conform.judging.claims import features
 from carproof.conform.judging.outcome import Outcome
 from carproof.conform.reporting.advice import advice_for
@@ -185,10 +185,8 @@ def right_answer(case: Case) -> dict[str, Any]:
         plan = engine.query(case.instance, case.solution.plans, case.robot, case.now)
         return {"cost": None if plan is None else plan_cost(case.instance, plan)}
     solution = case.solution
-    if case.op == "plan":
-        solution = engine.plan(case.instance, case.planner or Carp())
-    if case.op == "add" and case.robot is not None:
-        solution = engine.add(case.instance, solution, case.robot, case.now, case.options)
+    if case.op in ("plan", "add"):
+        solution = planned_by(engine, case)
     if case.op == "polish":
         solution = engine.polish(case.instance, solution, iterations=POLISH_ROUNDS)
     verdict = judge(case.instance, solution)
