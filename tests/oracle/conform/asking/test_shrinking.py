@@ -33,12 +33,14 @@ class Asked:
         self.cases: list[Case] = []
         self.robots: list[int] = []
         self.limits: list[float | None] = []
+        self.outcomes: list[Outcome] = []
 
     def __call__(self, asked: Case, seconds: float | None) -> Outcome:
         self.cases.append(asked)
         self.robots.append(len(asked.instance.robots))
         self.limits.append(seconds)
-        return Outcome(asked, self.judge(self.robots[-1]), seconds=self.taken)
+        self.outcomes.append(Outcome(asked, self.judge(self.robots[-1]), seconds=self.taken))
+        return self.outcomes[-1]
 
 
 UP_AND_DOWN = (0, 2, 1, 7, 4, MOST, *range(MOST))
@@ -104,6 +106,14 @@ def test_a_failure_that_does_not_come_again_stays_and_nothing_is_said_of_its_siz
     assert (made.minimal, made.repeats) == (False, False)
 
 
+def test_a_small_wrong_answer_that_does_not_come_again_stays() -> None:
+    asked = Asked(
+        lambda robots: JUMPS if robots >= 3 and (asked.limits[-1] is not None or robots == max(asked.robots)) else None
+    )
+    made = search(asked)
+    assert (best(made), made.repeats, made.minimal) == ((3, JUMPS), False, False)
+
+
 def test_a_robot_that_a_solution_names_and_the_instance_does_not_have_stays_while_all_else_goes() -> None:
     named = replace(case(2), op="check", solution=Solution((), (), ("r0", "r1", "nobody")))
     found, is_minimal = smallest(named, lambda each: "nobody" in each.solution.unplanned, lambda: False)
@@ -148,8 +158,10 @@ def test_smaller_cases_get_as_much_time_as_right_answers_took_and_some_more(
 
 def test_the_smallest_that_takes_too_long_is_asked_once_more_with_all_the_time() -> None:
     asked = Asked(lambda robots: NO_ANSWER if robots >= 2 else None)
-    assert best(search(asked)) == (2, NO_ANSWER)
+    made = search(asked)
+    assert best(made) == (2, NO_ANSWER)
     assert (asked.robots[-1], asked.limits[-1]) == (2, None)
+    assert made.best is asked.outcomes[-1], "what is shown is the answer with all the time"
 
 
 @pytest.mark.parametrize("other", [None, LATE, replace(LATE, category=Category.CRASH)])
@@ -166,3 +178,4 @@ def test_one_that_does_not_fail_alike_with_all_the_time_is_given_up_for_the_firs
     made = search(asked)
     assert best(made)[1] == NO_ANSWER
     assert best(made)[0] >= 9
+    assert (made.repeats, made.minimal) == (True, False), "the first is asked once more too"
