@@ -7,11 +7,14 @@ from typing import TypeAlias
 import msgspec
 import pytest
 from tests.oracle.conform.judging.test_judges import right_reply
+from tests.oracle.judging.test_audit import Wrong
 
+import carp_reference
 import carp_verify.bound.verify
 from carp_spec import Carp, Greedy, Instance, Neighbourhood, Plan, Planner, Resource, ResourceGraph, Robot, Solution
 from carp_spec.documents.solutions import solution_document
 from carp_spec.documents.verdicts import VerdictDocument
+from carp_verify.bound.rules import ContradictionError
 from carproof import BoundDocument
 from carproof.conform.answers import Answer
 from carproof.conform.asking.smoke import EAST, FIRST, FIRST_GOES, WEST, Stay, committed, passing_place, row
@@ -251,6 +254,17 @@ def test_carproof_and_a_plan_that_contradict_each_other_are_a_fault(monkeypatch:
         monkeypatch.setattr("carproof.conform.judging.judges._best", lambda *_, best=best: best)
         with pytest.raises(RuntimeError, match=message):
             first_finding(QUERY, goes(*FIRST_GOES), Level.COMPLETE)
+
+
+@pytest.mark.parametrize("bound", [3, 4])
+def test_a_best_plan_that_arrives_late_is_a_contradiction_whatever_its_certificate_says(
+    bound: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _, right = carp_reference.certifier(ALONE).certify("new")
+    late = later(plan("new", *FIRST_GOES))
+    monkeypatch.setattr(carp_reference, "certifier", lambda _: Wrong(late, changed(right, bound=bound)))
+    with pytest.raises(ContradictionError, match="arrives at 4, not at 3" if bound == 3 else "was refused"):
+        first_finding(QUERY, goes(*FIRST_GOES), Level.COMPLETE_IN_CONTEXT)
 
 
 @pytest.mark.parametrize(("asked", "answer", "rules"), ROWS)
