@@ -319,6 +319,18 @@ def test_where_carproof_is_undecided_nothing_is_called_wrong_nor_counted(monkeyp
     assert why_undecided(POLISH, POLISH.solution, Level.OPTIMAL) is None
 
 
+def test_about_a_large_instance_an_optimum_is_neither_called_wrong_nor_counted() -> None:
+    large = replace(ALONE, graph=replace(ALONE.graph, resources=(*ALONE.graph.resources, *map(Resource, range(30)))))
+    late = committed(large, new=WAITS)
+    answers: Sequence[tuple[Case, Answer]] = (
+        (case("optimum", large), claimed(6, 6, decided=True, solution=late)),
+        (case("optimum", large), NONE),
+        (case("plan", large), late),
+    )
+    assert [first_finding(*each, Level.OPTIMAL) for each in answers] == [None] * 3
+    assert all("does not find the optimum" in (why_undecided(*each, Level.OPTIMAL) or "") for each in answers)
+
+
 def test_an_optimum_that_is_not_decided_counts_as_no_answer() -> None:
     for level in (Level.OPTIMAL, Level.EXACT):
         for answer in (UNDECIDED, claimed(9, 7, decided=False, solution=CARP)):
