@@ -92,8 +92,8 @@ def order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Itera
 
 @violation_rule(
     "execution/exchange",
-    "Of two robots that are planned to make moves (r, s) and (s', r') at different ticks, r close to r' and s to s', "
-    "the first moves at an earlier tick than the second.",
+    "Of two moves that are planned at different ticks, (r, s) and (s', r') with r close to r' and s to s', the first "
+    "is made at an earlier tick than the second.",
     ADG,
 )
 def exchange_order_is_kept(instance: Instance, solution: Solution, trace: Trace) -> Iterator[Breach]:
