@@ -83,7 +83,7 @@ class Report:
 
     options: Options
     program: str = ""
-    outcomes: list[Outcome] = field(default_factory=list)
+    outcomes: list[Outcome] = field(default_factory=list, repr=False)
     random: Counter[str] = field(default_factory=Counter)
     tallies: dict[str, Tally] = field(default_factory=dict)
     large: Counter[str] = field(default_factory=Counter)
