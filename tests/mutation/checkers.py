@@ -47,6 +47,8 @@ FOOTPRINTS = (
     "oracle/layouts/test_footprints",
     "oracle/layouts/test_footprints_in_cells",
 )
+RELEASES = ("oracle/execution/test_release",)
+AUDITS = ("oracle/judging/test_audit", "oracle/judging/test_reasons")
 OUTCOMES = ("oracle/conform/judging/test_outcome",)
 LEMMAS = ("verify/lemmas/test_lemmas", "verify/lemmas/test_formulas")
 TESTS: Mapping[str, Sequence[str]] = {
@@ -88,6 +90,14 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carp_verify.optimum.clauses": FORMULAS,
     "carp_verify.optimum.encoding": FORMULAS,
     "carp_verify.optimum.robot_clauses": FORMULAS,
+    "carp_verify.release.verify": RELEASES,
+    "carp_verify.release.holding": RELEASES,
+    "carp_verify.release.rules": RELEASES,
+    "carp_verify.routes": (*BOUNDS, "verify/bound/test_stops", *FORMULAS),
+    "carp_verify.plain_files": ("verify/test_plain_files",),
+    "carproof.judging.audit": AUDITS,
+    "carproof.judging.unplanned": AUDITS,
+    "carproof.judging.verdicts": (*AUDITS, "oracle/judging/test_kernel_option"),
     "carproof.conform.judging.judges": ANSWERS,
     "carproof.conform.judging.optimum": ANSWERS,
     "carproof.conform.judging.gave_up": ANSWERS,
@@ -95,7 +105,7 @@ TESTS: Mapping[str, Sequence[str]] = {
     "carproof.conform.levels": REPORT,
     "carproof.conform.judging.deciding": REPORT,
     "carproof.conform.run": (*REPORT, "oracle/conform/reporting/test_saving"),
-    "carproof.conform.judging.outcome": OUTCOMES,
+    "carproof.conform.judging.outcome": (*OUTCOMES, *REPORT),
     "carproof.conform.programs.function": OUTCOMES,
     "carproof.conform.findings": (
         "oracle/conform/reporting/test_report",

@@ -5,21 +5,22 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from tests.oracle.conform.judging.test_one_answer import BEST, OPTIMUM, QUERY, UNDECIDED, goes
+from tests.oracle.conform.judging.test_one_answer import BEST, HURRIES, OPTIMUM, QUERY, UNDECIDED, goes
 
-from carp_spec import Instance, Solution
+from carp_spec import Instance, Resource, Solution
 from carproof.conform.answers import Reply, Skipped
 from carproof.conform.asking.smoke import EAST, FIRST_GOES, committed, row
 from carproof.conform.cases import Case
 from carproof.conform.findings import Category, Fault, Finding
 from carproof.conform.judging.gave_up import Effort
+from carproof.conform.judging.judges import first_finding
 from carproof.conform.judging.outcome import Outcome, ask
 from carproof.conform.levels import Level
 from carproof.conform.programs.function import Function
 from carproof.protocol.ops.planning import QueryDocument
 
 CRASH = Finding(Category.CRASH, "program/alive", "it is gone")
-GOES, NOBODY = goes(*FIRST_GOES), QueryDocument(None)
+GOES, NOBODY, TOO_FAST = goes(*FIRST_GOES), QueryDocument(None), goes(*HURRIES)
 OPEN = "it leaves the optimum undecided"
 
 
@@ -31,6 +32,7 @@ OPEN = "it leaves the optimum undecided"
         (Skipped("no words", asked=False), Level.SOUND, Outcome(QUERY, skipped="no words", asked=False)),
         (GOES, Level.COMPLETE_IN_CONTEXT, Outcome(QUERY, None, GOES, effort=Effort.TRIED)),
         (NOBODY, Level.SOUND, Outcome(QUERY, None, NOBODY, effort=Effort.GAVE_UP)),
+        (TOO_FAST, Level.SOUND, Outcome(QUERY, first_finding(QUERY, TOO_FAST, Level.SOUND), TOO_FAST)),
         (BEST, Level.OPTIMAL, Outcome(OPTIMUM, None, BEST, effort=Effort.TRIED)),
         (UNDECIDED, Level.OPTIMAL, Outcome(OPTIMUM, None, UNDECIDED, OPEN)),
     ],
@@ -48,6 +50,22 @@ def test_a_reply_within_its_time_is_judged_or_counts_as_none(
     found = ask(subject, expected.case, level, 0.5)
     assert replace(found, seconds=0.0) == expected
     assert 0 < found.seconds < 60
+
+
+@pytest.mark.parametrize("resources", [1, 30])
+def test_what_the_compiled_planner_refuses_is_not_judged(resources: int) -> None:
+    """The reference, which small instances are compared with, has no largest tick."""
+    graph = row([EAST]).graph
+    slow = tuple(Resource(id, duration=10**10) for id in range(resources))
+    instance = row([replace(EAST, pace=10**10)])
+    asked = replace(QUERY, instance=replace(instance, graph=replace(graph, resources=(*graph.resources, *slow))))
+    subject: Any = SimpleNamespace(ask=lambda *_: NOBODY)
+    found = ask(subject, asked, Level.COMPLETE_IN_CONTEXT)
+    if resources == 1:
+        assert found.fault.rule == "query/complete"
+    else:
+        assert (found.finding, found.effort) == (None, None)
+        assert (found.skipped or "").startswith("carproof cannot judge it")
 
 
 ALONE = Case("smoke", "one", "plan", row([EAST]))

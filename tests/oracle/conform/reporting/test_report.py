@@ -2,25 +2,32 @@
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 
 import pytest
 from tests.oracle.conform.judging.test_judges import Tampered, as_it_is, no_plan
 
-from carp_spec import Robot
+from carp_spec import Resource, Robot
+from carp_spec.documents.solutions import solution_document
 from carproof.conform import run
-from carproof.conform.answers import Reply
-from carproof.conform.asking.smoke import row, smoke_cases
+from carproof.conform.answers import Answer, Reply
+from carproof.conform.asking.smoke import committed, row, smoke_cases
 from carproof.conform.asking.vector_cases import vector_cases
 from carproof.conform.cases import Case, Stage
 from carproof.conform.findings import Category, Finding, wrong
+from carproof.conform.judging.deciding import Extent
 from carproof.conform.judging.gave_up import Effort
 from carproof.conform.judging.outcome import Outcome
 from carproof.conform.levels import EXECUTOR_LEVELS, JUDGED_OPS, Level
 from carproof.conform.run import Options, Report, conform
-from carproof.protocol.ops.planning import QueryDocument
+from carproof.optima import OptimumDocument
+from carproof.protocol.ops.planning import QueryDocument, query_document
 
 NOBODY = QueryDocument(None)
 WRONG = wrong("plan/move", "it jumps")
+ARRIVES_AT = {tick: committed(row([]), new=[("a", 0, tick), ("b", tick, tick + 4)]) for tick in (5, 8)}
+SLOW = replace(row([]).graph, resources=(Resource("a", duration=6), *row([]).graph.resources[1:]))
+WRITTEN = solution_document(ARRIVES_AT[8])
 CRASH = Finding(Category.CRASH, "program/alive", "it is gone")
 
 
@@ -78,6 +85,25 @@ def test_counts_decide_whether_a_program_conforms(outcomes: Sequence[Outcome], c
 def test_answers_to_the_ops_of_the_level_are_counted() -> None:
     outcomes = (tried(), tried("smoke", "plan"), failed("vectors"), tried(op="bound"), skipped(), not_asked())
     assert report(Level.CONTEXT_OPTIMAL, *outcomes).tested == 3
+
+
+def test_the_extent_is_of_right_answers_in_which_there_was_something_to_do() -> None:
+    """Nothing is shown beyond it."""
+    small = replace(case(robots=2), now=3)
+    wide = replace(case(robots=1), instance=row([Robot(0, "a", "b", pace=7)], capacity="9111"), solution=ARRIVES_AT[5])
+    slow = replace(case(), instance=replace(row([]), graph=SLOW))
+    right = [Outcome(each, None, NOBODY, effort=Effort.TRIED) for each in (small, wide, slow)]
+    largest = replace(small, instance=row([Robot(id, "a", "b", pace=99) for id in range(9)]), now=999)
+    others = [Outcome(largest, None, NOBODY, effort=each) for each in (Effort.GAVE_UP, Effort.NOTHING_TO_DO, None)]
+    assert report(Level.SOUND, *others, Outcome(largest, WRONG, NOBODY)).extent == Extent()
+    assert report(Level.SOUND, *right, *others).extent == Extent(2, 4, 9, 6, 7, 5)
+
+
+@pytest.mark.parametrize(
+    "answer", [ARRIVES_AT[8], query_document(ARRIVES_AT[8].plans[0]), OptimumDocument(8, 8, True, WRITTEN)]
+)
+def test_the_extent_has_the_last_tick_of_an_answer(answer: Answer) -> None:
+    assert report(Level.SOUND, Outcome(case(), None, answer, effort=Effort.TRIED)).extent.tick == 8
 
 
 def test_a_right_answer_without_resources_counts() -> None:
