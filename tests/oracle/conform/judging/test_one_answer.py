@@ -111,12 +111,15 @@ QUERIES: Sequence[Row] = (
     ),
 )
 PLAN = case("plan", BEHIND, planner=Carp())
+TWO_BLOCKED = case("plan", row([FIRST, WEST, Robot("third", "c", "a")]), planner=Carp())
 GREEDY = case("plan", BEHIND, planner=Greedy())
 FREE = case("plan", MEETING)
 CLASSICAL = replace(FREE, classical=True)
 ASIDE_SECOND = in_order(committed(MEETING, new=WESTWARDS, first=ASIDE), "new", "first")
 PLANS: Sequence[Row] = (
     (PLAN, committed(BEHIND, first=FIRST_GOES, new=BEHIND_GOES), {}),
+    (PLAN, in_order(committed(BEHIND, new=BEHIND_GOES, first=FIRST_GOES), "first", "new"), {}),
+    (TWO_BLOCKED, replace(committed(TWO_BLOCKED.instance, first=FIRST_GOES), unplanned=("third", "new")), {}),
     (PLAN, committed(BEHIND, first=FIRST_GOES), {Level.COMPLETE_IN_CONTEXT: "query/complete"}),
     (PLAN, committed(BEHIND, new=BEHIND_GOES), {Level.COMPLETE_IN_CONTEXT: "query/complete"}),
     (PLAN, committed(BEHIND, first=WAITS, new=BEHIND_GOES), {Level.CONTEXT_OPTIMAL: "query/optimal"}),
@@ -197,8 +200,13 @@ CHECK_RIGHT = case("check", BEHIND, first=FIRST_GOES)
 VERDICT: VerdictDocument = right(CHECK)
 VALID: VerdictDocument = right(CHECK_RIGHT)
 (EXCHANGE,) = VERDICT.violations
+CHECK_TWO = case("check", BEHIND, first=HURRIES, new=[("b", 0, 0), ("c", 0, 1), ("d", 1, 2)])
+VERDICT_OF_TWO: VerdictDocument = right(CHECK_TWO)
 CHECKS: Sequence[Row] = (
     (CHECK, VERDICT, {}),
+    (CHECK, changed(VERDICT, violations=(changed(EXCHANGE, robots=EXCHANGE.robots[::-1], message="they meet"),)), {}),
+    (CHECK_TWO, changed(VERDICT_OF_TWO, violations=VERDICT_OF_TWO.violations[::-1]), {}),
+    (CHECK_TWO, changed(VERDICT_OF_TWO, violations=VERDICT_OF_TWO.violations[:1]), {Level.EXACT: "program/result"}),
     (CHECK, changed(VERDICT, valid=True), {Level.SOUND: "program/result"}),
     (CHECK, changed(VERDICT, violations=()), {Level.SOUND: "joint/exchange"}),
     (CHECK, changed(VERDICT, cost=VERDICT.cost + 1), {Level.SOUND: "cost/total"}),
