@@ -57,8 +57,8 @@ class GivenWay:
 
     `solution` has the new plans, or is `None` if the robot itself or those that are `stuck` have none; then nothing
     changes. `extra` has the robots that were replanned, each with the ticks by which it arrives later. In no lawful
-    update (with a route: on that route) does the robot arrive before `least`, so `arrival` is proved to be the first if
-    it is that tick.
+    update (with a route: on that route) does the robot arrive before `least`; the planner's search says so, without a
+    certificate.
     """
 
     robot: RobotId
