@@ -9,7 +9,7 @@ from tests.oracle.conform.judging.test_judges import Tampered, as_it_is
 
 import carp_reference
 from carp_spec.limits import goals_stand_alone
-from carproof import Carp, Greedy, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Stop, conforms
+from carproof import Carp, Greedy, Group, Instance, Plan, Resource, ResourceGraph, Robot, Solution, Stop, conforms
 from carproof.conform.asking.smoke import EAST, FIRST, FIRST_GOES, WEST, committed, passing_place, row
 from carproof.conform.cases import ASKED_OPS, Case
 from carproof.conform.judging.claims import FEATURES, Claims, features, is_solvable
@@ -94,6 +94,22 @@ def test_a_case_is_left_out_where_it_has_a_feature_that_is_not_claimed(
         assert claims.left_out == [feature, *["robots without a plan"] * solvable, "groups", "stops and service"]
     cases = [Case("smoke", "one", "plan", instance) for instance in (having, without)]
     assert [feature in features(case) for case in cases] == [feature != "vanish", False]
+
+
+@pytest.mark.parametrize(
+    ("feature", "claims", "having"),
+    [
+        ("groups", Claims(groups=True), replace(PLAIN, graph=replace(PLAIN.graph, groups=(Group("g", ("a", "b")),)))),
+        ("stops", Claims(stops=True), replace(PLAIN, robots=(Robot("new", "a", stops=(Stop("b", service=1),)),))),
+        ("stops", Claims(stops=True), replace(PLAIN, robots=(Robot("new", "a", stops=(Stop("a"), Stop("b"))),))),
+    ],
+)
+def test_groups_and_stops_are_left_out_where_they_are_not_claimed(
+    feature: str, claims: Claims, having: Instance
+) -> None:
+    case = Case("smoke", "one", "plan", having)
+    assert Claims(groups=True, stops=True).why_not(case) is claims.why_not(case) is None
+    assert Claims(groups=feature != "groups", stops=feature != "stops").why_not(case) == f"it does not claim {feature}"
 
 
 def test_who_does_not_claim_now_is_asked_about_no_robot_under_way() -> None:
