@@ -47,7 +47,7 @@ FOOTPRINTS = (
     "oracle/layouts/test_footprints",
     "oracle/layouts/test_footprints_in_cells",
 )
-RELEASES = ("oracle/execution/test_release",)
+RELEASES = ("verify/release/test_witness", "oracle/execution/test_release")
 AUDITS = ("oracle/judging/test_audit", "oracle/judging/test_reasons")
 OUTCOMES = ("oracle/conform/judging/test_outcome",)
 LEMMAS = ("verify/lemmas/test_lemmas", "verify/lemmas/test_formulas")
