@@ -68,7 +68,7 @@ def nearly(order: Sequence[int], draw: Draw, robots: int) -> list[int]:
     changed = [*order]
     if order:
         place = draw.between(0, len(order) - 1)
-        changes = ([], [order[place]] * 2, [draw.between(0, robots - 1)])
+        changes: Sequence[list[int]] = ([], [order[place]] * 2, [draw.between(0, robots - 1)])
         changed[place : place + 1] = draw.one_of(changes)
         changed = draw.one_of([[order[place], *order[:place], *order[place + 1 :]], changed])
     return draw.one_of([[*order], changed])
