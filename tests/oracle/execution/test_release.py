@@ -248,6 +248,8 @@ def test_who_is_late_keeps_the_way_and_who_would_block_it_waits() -> None:
         ([Grant("r3", ())], "$.grants[0].robot"),
         ([Grant("r1", ()), Grant("r1", ())], "$.grants[1].robot"),
         ([Grant("r1", ("c",))], "$.grants[0].resources"),
+        ([Grant("r1", ("a",))], "$.grants[0].resources"),
+        ([Grant("r1", ("b",)), Grant("r3", ())], "$.grants[1].robot"),
         ([Grant("r1", ("b", "c", "d", "a"))], "$.grants[0].resources"),
     ],
 )
@@ -262,6 +264,15 @@ def test_who_is_not_released_yet_is_granted_nothing() -> None:
     assert release(ROW, ONE_BY_ONE, early, ["r2"]).beyond[0].grant == Grant("r2", ())
     with pytest.raises(Refusal, match="release/grants"):
         check_grants(ROW, ONE_BY_ONE, early, [Grant("r2", ("d",))])
+
+
+def test_robots_that_have_left_the_order_are_not_in_one_place() -> None:
+    first, ahead = Plan("r1", (Visit("a", 0, 10), Visit("b", 10, None))), (Visit("d", 9, 10), Visit("c", 10, None))
+    assert not release(ROW, ONE_BY_ONE, Trace(20, (first, Plan("r2", ahead)))).follows
+    together = (Visit("d", 9, 10), Visit("c", 10, 12), Visit("b", 12, None))
+    with pytest.raises(Refusal, match="release/room") as refused:
+        release(ROW, ONE_BY_ONE, Trace(20, (first, Plan("r2", together))))
+    assert refused.value.path == "$.plans"
 
 
 def test_plans_with_a_rotation_ahead_are_refused() -> None:

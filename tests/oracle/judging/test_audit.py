@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.oracle.running import EAST, EAST_PLAN, Run, corridor, line, save, solution, town
+from tests.oracle.running import EAST, EAST_PLAN, Document, Run, corridor, line, save, solution, town
 
 import carp_reference
 from carp_spec import Plan, RobotId, Solution, plan_cost, violations_of
@@ -80,6 +80,7 @@ def test_a_plan_is_late_just_where_the_reference_finds_an_earlier_one(planned: P
         if plan_cost(planned.instance, best) < plan_cost(planned.instance, plan):
             late.append(plan)
     assert [each.plan for each in audit.late] == late
+    assert [each.before for each in audit.late] == [tuple(plans[: plans.index(each)]) for each in late]
     assert [each for each in plans if each not in late] == audit.certified
     for each in audit.late:
         assert violations_of(planned.instance, (*each.before, each.earlier)) == ()
@@ -128,18 +129,35 @@ class Wrong:
         return self.found
 
 
+EARLY = solution({"r1": EAST_PLAN})
+
+
+def plan_in(document: Document) -> Plan:
+    return read_solution(line(**document)).plans[0]
+
+
 @pytest.mark.parametrize(
-    ("plan", "message"),
+    ("audited", "plan", "message"),
     [
-        (None, "was not found"),
-        (read_solution(line(**solution({"r1": [["a", 0, 1], ["c", 1, 2]]}))).plans[0], "breaks a rule"),
-        (read_solution(line(**LATE)).plans[0], "was refused"),
+        (LATE, None, "was not found"),
+        (EARLY, plan_in(LATE), "was not found"),
+        (LATE, plan_in(solution({"r1": [["a", 0, 1], ["c", 1, 2]]})), "breaks a rule"),
+        (LATE, plan_in(LATE), "was refused"),
     ],
 )
 def test_a_planner_that_is_wrong_is_a_contradiction(
-    monkeypatch: pytest.MonkeyPatch, plan: Plan | None, message: str
+    monkeypatch: pytest.MonkeyPatch, audited: Document, plan: Plan | None, message: str
 ) -> None:
     certificate = QueryCertificateDocument("carproof-query/1", "r1", 0, 3, (), (("c", 0),))
     monkeypatch.setattr(carp_reference, "certifier", lambda _: Wrong(plan, certificate))
     with pytest.raises(ContradictionError, match=message):
-        audit_in_order(read_instance(line(**ALONE)), read_solution(line(**LATE)), REFERENCE)
+        audit_in_order(read_instance(line(**ALONE)), read_solution(line(**audited)), REFERENCE)
+
+
+def test_a_planner_that_finds_a_plan_through_another_robot_is_a_contradiction(monkeypatch: pytest.MonkeyPatch) -> None:
+    instance = read_instance(line(**corridor([{"id": "r0", "start": "b", "goal": "b"}, EAST])))
+    audited = read_solution(line(**solution({"r0": [["b", 0, 2]], "r1": [["a", 0, 2], ["b", 2, 3], ["c", 3, 4]]})))
+    certificate = QueryCertificateDocument("carproof-query/1", "r1", 0, 2, (), (("c", 0),))
+    monkeypatch.setattr(carp_reference, "certifier", lambda _: Wrong(plan_in(EARLY), certificate))
+    with pytest.raises(ContradictionError, match="the plan found for robot r1 breaks a rule"):
+        audit_in_order(instance, audited, REFERENCE, followed={"r1": None})
