@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from msgspec import structs
 from tests.spec.making import PARKED, SOLVED, plan_of
 
+import carp_spec
 from carp_spec import Instance, Plan, Resource, ResourceGraph, Robot, Stop, Visit, has_ended
 from carp_spec.instance_rules import stops_are_places_to_serve
 from carp_spec.plan_rules import least_stays, plan_keeps_history, stops_left, stops_served
@@ -37,6 +38,7 @@ BUSY = plan_of("r1", ("a", 0, 2), ("c", 2, 4), ("a", 4, 8), ("c", 8, 10), ("c2",
 @pytest.mark.parametrize(("visits", "served"), [(0, 0), (1, 0), (2, 0), (3, 1), (4, 2), (5, 3), (6, 4)])
 def test_a_visit_serves_the_next_stop_if_it_is_there_for_long_enough(visits: int, served: int) -> None:
     assert stops_served(PICK.stops, BUSY.visits[:visits]) == served
+    assert carp_spec.stops_served(PICK.stops, BUSY.visits[:visits]) == served
     assert stops_served(PICK.stops[:-1], BUSY.visits[:visits]) == min(served, 3)
     assert stops_served(PICK.stops, [Visit("a", 7, 10)]) == 0, "it is there for 3 of 4 ticks"
     assert stops_served(PICK.stops, [Visit("c", 0, 9)]) == 0, "it is elsewhere"

@@ -74,6 +74,15 @@ def test_ticks_that_arrays_do_not_hold_are_left_to_the_rules(instance: Instance,
         assert not breaks_no_rule(instance, (replace(plans[0], visits=(*plans[0].visits[:-1], last)), *plans[1:]))
 
 
+def test_moves_at_late_ticks_on_a_large_graph_are_left_to_the_rules() -> None:
+    """Their numbers do not fit into 64 bits."""
+    tick = LATEST - 10
+    instance = instance_on(ResourceGraph(tuple(map(Resource, range(70_000))), ((0, 1),)), Robot("r", 0, 1))
+    plans = [plan_of("r", (0, 0, tick), (1, tick, tick + 1))]
+    assert not breaks_no_rule(instance, plans)
+    assert not violations_of(instance, plans)
+
+
 @pytest.mark.parametrize(
     ("instance", "plans", "now"),
     [
