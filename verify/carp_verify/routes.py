@@ -82,12 +82,11 @@ class Routes:
 def routes_of(instance: Instance, robot: Robot, before: Before) -> Routes:
     """The places of the robot; `before` has the resources from which one move leads to each."""
     stay = instance.stay(robot.id, robot.stops[-1])
-    is_there = len(robot.stops) == 1 and robot.start == robot.goal
     if len(robot.stops) > 1:
         return _over_stops(instance, robot, stay)
     duration = {each.id: instance.duration(robot.id, each.id) for each in instance.graph.resources}
     successors, goal = instance.graph.successors, robot.goal
-    return Routes((robot.start,), duration, successors, before, before[goal], goal, stay, is_there)
+    return Routes((robot.start,), duration, successors, before, before[goal], goal, stay, robot.start == goal)
 
 
 def _over_stops(instance: Instance, robot: Robot, stay: int) -> Routes:

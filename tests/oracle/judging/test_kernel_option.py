@@ -176,12 +176,19 @@ def test_a_proof_is_verified_without_a_kernel_that_cannot_decide(
 
 
 @pytest.mark.parametrize(
-    "answer", [{"bound": 6, "cost": 5}, {"bound": 5, "cost": 4}, {"bound": 5, "cost": 5, "unplanned": 1}]
+    "answer",
+    [
+        {"bound": 6, "cost": 5},
+        {"bound": 4, "cost": 5},
+        {"bound": 5, "cost": 4},
+        {"bound": 5, "cost": 5, "unplanned": 1},
+        {"verdict": "refused", "path": "$", "rule": "refutation/step", "message": "it follows from nothing"},
+    ],
 )
 def test_a_kernel_that_proves_something_else_is_a_contradiction(
-    carproof: Run, monkeypatch: pytest.MonkeyPatch, answer: dict[str, int]
+    carproof: Run, monkeypatch: pytest.MonkeyPatch, answer: dict[str, object]
 ) -> None:
-    stand_in(monkeypatch, verdict="accepted", **{"unplanned": 0, **answer})
+    stand_in(monkeypatch, **{"verdict": "accepted", "unplanned": 0, **answer})
     require_contradiction(carproof("verify proof"))
 
 

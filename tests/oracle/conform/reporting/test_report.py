@@ -106,6 +106,11 @@ def test_the_extent_has_the_last_tick_of_an_answer(answer: Answer) -> None:
     assert report(Level.SOUND, Outcome(case(), None, answer, effort=Effort.TRIED)).extent.tick == 8
 
 
+def test_a_wrong_answer_is_not_counted_as_a_right_one() -> None:
+    tally = report(Level.SOUND, failed(), tried(), skipped(), not_asked()).tallies["query"]
+    assert (tally.asked, tally.answered, tally.tried) == (3, 1, 1)
+
+
 def test_a_right_answer_without_resources_counts() -> None:
     """A failure may shrink to nothing, and is asked again once the program is mended."""
     nothing = Case("saved", "one", "check", row([], cells=""))
