@@ -58,5 +58,5 @@ def _how_small(report: Report) -> str:
     if not report.repeats:
         return "answered otherwise when it is asked once more: the answer depends on more than the question"
     if report.minimal:
-        return "minimal: with any one robot, resource, edge or unit of a number less it does not fail"
+        return "minimal: with any one robot, resource, edge, group or unit of a number less it does not fail"
     return f"perhaps not minimal: the {report.options.shrink_seconds:g} s for shrinking (--shrinking) were over"
