@@ -153,7 +153,7 @@ planted: compiled
 	nice $(BIN)/python -m tests.oracle.conform.asking.planted
 
 # Every line and branch of the specification and the reference, by their own tests, the vectors, and the tests of what commands, ops and
-# public functions refuse; then of the compiled planner, run uncompiled: 40 minutes, without tests that start processes of their own or
+# public functions refuse; then of the compiled planner, run uncompiled: ten minutes on two cores, without tests that start processes of their own or
 # measure times, and with 20 seconds a test.
 SPECIFIED := tests/spec tests/reference tests/verify/query $(addprefix tests/verify/test_,vectors.py documents.py) \
     $(addprefix tests/oracle/api/test_,assign.py malformed_values.py public_face.py) \
@@ -161,7 +161,7 @@ SPECIFIED := tests/spec tests/reference tests/verify/query $(addprefix tests/ver
 
 coverage: install
 	$(BIN)/pytest -m 'not nightly and not ci' --cov --cov-fail-under=100 $(SPECIFIED)
-	NUMBA_DISABLE_JIT=1 HYPOTHESIS_PROFILE=quick $(BIN)/pytest -p tests.optimized.within_seconds -W ignore::RuntimeWarning \
+	NUMBA_DISABLE_JIT=1 HYPOTHESIS_PROFILE=quick $(BIN)/pytest -n 2 -p tests.optimized.within_seconds -W ignore::RuntimeWarning \
 	    --cov --cov-config=tests/optimized/coverage.toml tests/optimized tests/verify/query $(addprefix tests/oracle/,api execution judging) \
 	    -k "not paper_sized and not every_small and not compiling and not uncompiled and not bounds and not planted \
 	    and not the_time and not undecided_search and not counted_once"
