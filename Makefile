@@ -153,8 +153,8 @@ planted: compiled
 	nice $(BIN)/python -m tests.oracle.conform.asking.planted
 
 # Every line and branch of the specification and the reference, by their own tests, the vectors, and the tests of what commands, ops and
-# public functions refuse; then of the compiled planner, run uncompiled: ten minutes on two cores, without tests that start processes of their own or
-# measure times, and with 20 seconds a test.
+# public functions refuse; then of the compiled planner, run uncompiled: ten minutes on two cores, with 20 seconds a test, and without
+# tests that start processes of their own or measure times.
 SPECIFIED := tests/spec tests/reference tests/verify/query $(addprefix tests/verify/test_,vectors.py documents.py) \
     $(addprefix tests/oracle/api/test_,assign.py malformed_values.py public_face.py) \
     tests/oracle/entry/test_refusals.py $(addprefix tests/oracle/protocol/test_,ops.py schema.py)

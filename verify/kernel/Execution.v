@@ -53,8 +53,8 @@ Record Executes (ps ts : list plan) : Prop := {
   order_is_kept : forall one m v other n w y,
     Visit_of ps one m v -> Visit_of ps other n w -> visit_resource v = visit_resource w -> Left_before v w ->
     Visit_of ts other n y -> exists x, Visit_of ts one m x /\ Left_before x y;
-  (** execution/exchange: of two robots that, by the plans, make the moves (r, s) and (s, r) at different ticks, the
-      first moves at an earlier tick than the second. *)
+  (** execution/exchange: of two moves that are planned at different ticks, (r, s) and (s, r), the first is made at an
+      earlier tick than the second. *)
   exchange_order_is_kept : forall one m v v' other n w w' y,
     Visit_of ps one m v -> Visit_of ps one (S m) v' -> Visit_of ps other n w' -> Visit_of ps other (S n) w ->
     visit_resource v = visit_resource w -> visit_resource v' = visit_resource w' -> enter v' < enter w ->

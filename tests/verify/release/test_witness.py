@@ -5,14 +5,12 @@ from itertools import combinations
 
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.oracle.execution.test_release import Held, Naive, planned
+from tests.oracle.execution.test_release import QUESTIONS, Held, Naive, planned
 
 from carp_spec import Instance, Plan
 from carp_spec.permutations import splitmix64
 from carp_verify.release.verify import Finish, Overfull, Places, Stuck, Witness, is_witness
 from carproof.testing.random_instances import Draw
-
-QUESTIONS = 10
 
 
 def shows(instance: Instance, plans: Sequence[Plan], held: Held, witness: Witness) -> bool:
