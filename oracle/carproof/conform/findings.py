@@ -160,8 +160,8 @@ def all_arrive(standing: Sequence[RobotId]) -> bool:
 
 RIGHT_QUESTIONS = Code(
     "program/questions",
-    "The level and the features left out, by which a function is judged, are known ones; the number of examples and "
-    "the seed are whole numbers of at least 0.",
+    "A function is judged; the level and the features left out are known ones, and the number of examples and the seed "
+    "are whole numbers of at least 0.",
     DESIGN,
 )
 PROGRAM_RULES: tuple[Rule[..., Any] | Code, ...] = (

@@ -13,7 +13,6 @@ from carproof.conform.judging.claims import FEATURES, Claims
 from carproof.conform.levels import EXAMPLES, LARGE_SECONDS, LEVELS, WHOLE_LEVELS
 from carproof.conform.programs.function import Function
 from carproof.conform.run import Options, Report, conform
-from carproof.extras import require
 
 LevelName: TypeAlias = Literal["sound", "complete-in-context", "context-optimal", "complete", "optimal"]
 """The levels of functions, which plan whole instances."""
@@ -39,9 +38,10 @@ def conforms(  # noqa: PLR0913 - the options of the command
     asked, and with `solvable` all robots can have plans. Only with `groups` instances have groups, and only
     with `stops` robots have several stops or service. For `large` seconds it is also asked about 10 to 1,000 robots; no
     other time limits it. `saved` are cases to ask first. The report's `conforms` is the answer, and its `failures` have
-    the smallest cases found. Raises `Refusal` for an unknown level or feature.
+    the smallest cases found. Raises `Refusal` for what cannot be called, and for an unknown level or feature.
     """
-    require("pysat")
+    if not callable(planner):
+        raise Refusal("option", "$.planner", RIGHT_QUESTIONS.id, f"it must be a function, not {planner!r}")
     require_each([*without] if isinstance(cast("object", without), Collection) else without, str, "$.without")
     require_limits(large=large)
     levels = [each.label for each in WHOLE_LEVELS]

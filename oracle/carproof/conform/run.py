@@ -20,6 +20,7 @@ from carproof.conform.judging.gave_up import Effort
 from carproof.conform.judging.outcome import Outcome, ask
 from carproof.conform.levels import EXAMPLES, EXECUTOR_LEVELS, JUDGED_OPS, Level
 from carproof.conform.shrinking import SHRINK_SECONDS, FailureSearch
+from carproof.extras import require
 from carproof.testing.random_instances import Draw
 
 MOST_FAULTS = 3
@@ -249,6 +250,9 @@ class _Run:
             if "drive" not in ops:
                 raise protocol_error(answers_enough.id, "the answer to start of an executor must name drive")
             ops = options.ops
+        compares = not options.executor and (options.level >= Level.COMPLETE or "bound" in ops)
+        if compares or options.claims.solvable:
+            require("pysat")  # it finds the optima of small instances
         self.ask_fixed(case for case in saved if case.op in ops)
         self.ask_fixed(smoke_cases(ops, options.level, options.whole, options.claims.groups))
         self.ask_fixed(vector_cases(ops, options.level, options.whole, options.claims))

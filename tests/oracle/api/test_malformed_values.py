@@ -386,6 +386,7 @@ def far_away(x: int) -> Instance:
         (lambda: imported_for(carproof.Footprint(900, 600, round=True)), "footprint/vehicle", "$.footprint"),
         (lambda: write_solution(Solution((), (), ("\ud800",))), "document/json", "$"),
         (lambda: carproof.read_movingai(b"", b"", -1), "movingai/scenario", "$.agents"),
+        (lambda: carproof.conforms(NONE), "program/questions", "$.planner"),
         (lambda: carproof.conforms(carproof.plan, examples=-1), "program/questions", "$.examples"),
         (lambda: carproof.conforms(carproof.plan, without=NONE), "document/shape", "$.without"),
         (lambda: carproof.conforms(carproof.plan, large=NONE), "request/limit", "$.large"),

@@ -26,7 +26,7 @@ FINDS = {
     "optimum town.json": "python-sat",
     "bound town.json": "python-sat",
     "gap town.json": "python-sat",
-    "conform true": "python-sat",
+    f"conform --level complete -- {sys.executable} -m carproof serve": "python-sat",
     "experiment quality --quick": "joblib",
 }
 DEPOT = ROOT / "oracle/carproof/examples/depot"
@@ -93,10 +93,12 @@ def test_an_op_without_its_extra_names_it_and_the_server_goes_on(folder: Path) -
     assert done.stderr == b""
 
 
-def test_another_projects_tests_run_without_extras_and_a_judgement_names_the_one_it_needs(folder: Path) -> None:
+def test_another_projects_tests_need_no_extra_but_where_they_compare_optima(folder: Path) -> None:
     (folder / "pytest.ini").write_text("[pytest]\n")
     (folder / "test_mine.py").write_text(
-        "def test_nothing():\n    pass\ndef test_planner(carproof):\n    carproof.conforms(print)\n"
+        "from carproof import plan\n"
+        "def test_plan(carproof):\n    carproof.conforms(plan, 'complete-in-context', examples=20, large=0)\n"
+        "def test_all(carproof):\n    carproof.conforms(plan, 'complete')\n"
     )
     done = run(
         "import os, pytest\nos.environ['PYTEST_DISABLE_PLUGIN_AUTOLOAD'] = '1'  # hypothesis' own\n"

@@ -32,7 +32,6 @@ from carproof.conform.programs.child import Limits
 from carproof.conform.programs.one_shot import INSTANCE, MAP, SCEN, OneShot, names
 from carproof.conform.programs.program import Program
 from carproof.engines import warm
-from carproof.extras import require
 from carproof.formats import ADAPTERS
 from carproof.progress import progress
 from carproof.protocol.ops.published import op_list
@@ -180,7 +179,6 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     from carproof.conform.reporting.saved import own_folder, read_saved  # noqa: PLC0415
     from carproof.conform.run import Options, conform  # noqa: PLC0415
 
-    require("pysat")
     require_limits(timeout=timeout, large=large, shrinking=shrinking)
     if format is not None and not one_shot:
         raise click.UsageError("--from concerns the files that programs write with --one-shot.")

@@ -16,7 +16,7 @@ from typing import IO, cast
 from carproof.conform.findings import IN_TIME, Category, Fault, Finding, is_alive, is_response
 
 _PIECE = 2**16
-_KEPT_STDERR = 8 * 2**10
+KEPT_STDERR = 8 * 2**10
 _HIDDEN = ("PYTEST_", "HYPOTHESIS_", "CARPROOF_")
 _LAST_SECONDS = 0.5
 _NAP = 0.005
@@ -185,7 +185,7 @@ class Child:
         except BlockingIOError:
             return False
         self._errors += piece
-        del self._errors[:-_KEPT_STDERR]
+        del self._errors[:-KEPT_STDERR]
         if not piece and selector is not None:
             selector.unregister(self._stderr)
             self._stderr.close()
@@ -212,7 +212,7 @@ class Child:
 
     def _keep_all_errors(self) -> None:
         """Read what there is on standard error."""
-        reads = 0 if self._stderr.closed else _KEPT_STDERR
+        reads = 0 if self._stderr.closed else KEPT_STDERR
         while reads and self._keep_errors(None):
             reads -= 1
 

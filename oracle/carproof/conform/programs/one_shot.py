@@ -24,7 +24,7 @@ SHELL = 128
 INSTANCE, MAP, SCEN, AGENTS, SOLUTION = "{instance}", "{map}", "{scen}", "{agents}", "{solution}"
 PROBE = movingai_instance(GridMap(3, 2, ("...", "...")), [Robot("r1", "2,0", "0,1")], "park")
 """An instance whose right answer fits only one format: only in one order of coordinates is the robot's start a cell."""
-_KEPT_STDERR = 8 * 2**10
+KEPT_STDERR = 8 * 2**10
 
 
 def _folder() -> TemporaryDirectory[str]:
@@ -87,7 +87,7 @@ class OneShot(Subject):
         try:
             yield
         except Fault as fault:
-            ending_of_errors = self._beginning(errors)[-_KEPT_STDERR:].decode("utf-8", "backslashreplace")
+            ending_of_errors = self._beginning(errors)[-KEPT_STDERR:].decode("utf-8", "backslashreplace")
             raise Fault(replace(fault.finding, stderr=ending_of_errors)) from fault
 
     def _written(self, instance: Instance, folder: Path, errors: BinaryIO, seconds: float) -> bytes:
