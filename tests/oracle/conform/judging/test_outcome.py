@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from tests.oracle.conform.judging.test_one_answer import BEST, HURRIES, OPTIMUM, QUERY, UNDECIDED, goes
 
-from carp_spec import Instance, Resource, Solution
+from carp_spec import Instance, Refusal, Resource, Solution
 from carproof.conform.answers import Reply, Skipped
 from carproof.conform.asking.smoke import EAST, FIRST_GOES, committed, row
 from carproof.conform.cases import Case
@@ -66,6 +66,15 @@ def test_what_the_compiled_planner_refuses_is_not_judged(resources: int) -> None
     else:
         assert (found.finding, found.effort) == (None, None)
         assert (found.skipped or "").startswith("carproof cannot judge it")
+
+
+def test_a_refusal_about_a_small_instance_is_no_outcome() -> None:
+    graph = row([EAST]).graph
+    full = replace(graph, resources=(*graph.resources, Resource("full", capacity=0)))
+    asked = replace(QUERY, instance=replace(QUERY.instance, graph=full))
+    subject: Any = SimpleNamespace(ask=lambda *_: NOBODY)
+    with pytest.raises(Refusal):
+        ask(subject, asked, Level.COMPLETE_IN_CONTEXT)
 
 
 ALONE = Case("smoke", "one", "plan", row([EAST]))
