@@ -8,8 +8,7 @@ import numpy as np
 from carp_optimized import passes
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.jit.kinds import Ints
-from carp_optimized.queries.search import WHOLE
-from carp_optimized.state.arrays import LARGEST, TOO_FAR, UNREACHABLE
+from carp_optimized.state.arrays import LARGEST, TOO_FAR, UNREACHABLE, WHOLE
 from carp_optimized.windows.fitting import STANDING
 from carp_spec import Instance, Plan, RobotId
 from carp_spec.documents.query_certificates import QueryCertificateDocument, ServedLayer, certificate_of

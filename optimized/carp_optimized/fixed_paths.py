@@ -10,8 +10,7 @@ from carp_optimized import passes
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.jit.references import Native
 from carp_optimized.queries.paths import add_disjoint, reach_beside
-from carp_optimized.queries.search import ALONE
-from carp_optimized.state.arrays import NO_LIMIT, NONE, State
+from carp_optimized.state.arrays import ALONE, NO_LIMIT, NONE, State
 from carp_spec import FixedPaths
 from carp_spec.limits import refuse_stops
 

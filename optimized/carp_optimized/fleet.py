@@ -10,10 +10,10 @@ from carp_optimized.jit.compiling import RecordsExhausted, RoomExhausted, TicksE
 from carp_optimized.jit.kinds import Ints
 from carp_optimized.jit.references import Native
 from carp_optimized.neighbourhood.reuse import Queries, Reuse
-from carp_optimized.queries.search import ALONE
 from carp_optimized.recording import enlarged, read_plan, write_plan
 from carp_optimized.state import encoding, limits, room
 from carp_optimized.state.arrays import (
+    ALONE,
     LARGEST,
     NONE,
     UNKNOWN,

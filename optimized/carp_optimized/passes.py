@@ -5,8 +5,8 @@ from carp_optimized.jit.kinds import Ints, Longs
 from carp_optimized.jit.references import Native
 from carp_optimized.queries.guides import guide_of, guide_slot
 from carp_optimized.queries.over_stops import shortest_of
-from carp_optimized.queries.search import ALONE, NOTED, cost_alone, find_any_plan, find_plan_by
-from carp_optimized.state.arrays import NEVER, NONE, TOO_FAR, UNASKED, UNCHANGED, UNKNOWN, State
+from carp_optimized.queries.search import cost_alone, find_any_plan, find_plan_by
+from carp_optimized.state.arrays import ALONE, NEVER, NONE, NOTED, TOO_FAR, UNASKED, UNCHANGED, UNKNOWN, State
 from carp_optimized.state.natives import state_at
 from carp_optimized.state.records import close_record, cost_of, start_record
 from carp_optimized.windows.fitting import still_found
@@ -15,7 +15,10 @@ from carp_optimized.windows.reserving import reserve, withdraw
 
 @entry
 def find_one(native: Native[State], robot: int, before: int, now: int, asked: int) -> int:
-    """The record of one robot's plan against the reservations, `ALONE` or `WHOLE`, or `NONE`; nothing is reserved."""
+    """The record of one robot's plan against the reservations, or `NONE`; nothing is reserved.
+
+    It is asked for `ALONE`, `WHOLE` or `GREEDY`.
+    """
     state = state_at(native)
     return find_any_plan(state, robot, before, now, NEVER, NEVER, asked)
 

@@ -83,7 +83,7 @@ def _row(instance: Instance) -> str:
     row: list[object] = [len(instance.robots), len(instance.graph.resources), len(instance.graph.groups)]
     planners: tuple[Callable[[], Solution], ...] = (
         lambda: carp_optimized.plan(instance, Carp()),
-        lambda: plan_holding_starts(instance, by_way, lambda _: True),
+        lambda: Solution.of(instance, plan_holding_starts(instance, by_way, lambda _: True).plans),
         lambda: carproof.plan_within(instance, seconds=SECONDS),
     )
     for make in planners:

@@ -4,7 +4,8 @@ Robots that move a step a tick (classical MAPF) are planned by `carp_optimized.i
 clock after each few milliseconds. All others are planned by CARP, the shortest way first, as long as there is time; if
 some get no plan, once more, where each holds its start until it is planned. Then follow a repair and an annealing, if
 there is enough time for these, or else passes with those first that failed. In the end plans are settled, if there is
-time. Nothing here is trusted: the law judges the plans.
+time. A pass that falls behind, so that half of the time would be too short for it, goes on with greedy queries, and so
+do those after it. Nothing here is trusted: the law judges the plans.
 """
 
 from collections.abc import Callable
@@ -20,7 +21,9 @@ from carp_optimized.improve.annealing import BRIEF, anneal
 from carp_optimized.improve.holding import plan_holding_starts
 from carp_optimized.improve.planning import Found, plan_crowd, time_of_visit
 from carp_optimized.improve.repair import plan_failed_first
+from carp_optimized.jit.kinds import Longs
 from carp_optimized.settling import plan_again, settled
+from carp_optimized.state.arrays import ALONE, GREEDY, SOON
 from carp_optimized.state.limits import refuse_what_is_too_large
 from carp_spec import Instance, Solution
 from carp_spec.inputs.options import require_polish_options
@@ -32,6 +35,8 @@ ENOUGH = 4
 """The annealing begins if CARP has left this many times its own time, as it takes up the plans again."""
 AGAIN = 2
 """With less, plans are settled in half of the rest if CARP has left this many times its own time."""
+UNHURRIED, PACE = 0.05, 0.45
+"""The parts of the time that CARP may take for any robots, and in all for the ways of those that it has planned."""
 
 
 def plan_within(
@@ -70,7 +75,8 @@ def plan_within(
     if seconds is not None:
         seconds -= clock() - started
     started = clock()
-    solution = _first_plans(fleet, lambda: clock() - started, seconds, visit)
+    fleet, asked = _first_plans(fleet, lambda: clock() - started, seconds, visit)
+    solution = Solution.of(instance, fleet.plans)
     if seconds is None:
         solution = carp_optimized.polish(instance, solution, iterations=iterations, seed=seed, advance=advance)
         return Found(settled(instance, solution), None)
@@ -80,37 +86,53 @@ def plan_within(
         solution = anneal(instance, solution, left - spent, seed=seed, advance=advance, clock=clock)
         return Found(solution, None)
     settles = left > AGAIN * spent
-    if solution.unplanned:
+    if solution.unplanned and left > spent:
         ends = (left + spent) / 2 if settles else left
-        solution = plan_failed_first(instance, solution, lambda: clock() - started < ends)
+        solution = plan_failed_first(instance, solution, lambda: clock() - started < ends, asked)
     if settles:
-        solution = settled(instance, solution, lambda: clock() - started < left)
+        solution = settled(instance, solution, lambda: clock() - started < left, SOON if asked == GREEDY else ALONE)
     return Found(solution, None)
 
 
-def _first_plans(fleet: PlannedFleet, spent: Callable[[], float], seconds: float | None, visit: float) -> Solution:
-    """The plans of CARP, the shortest way first, for as many robots as there is time for."""
+def _first_plans(
+    fleet: PlannedFleet, spent: Callable[[], float], seconds: float | None, visit: float
+) -> tuple[PlannedFleet, int]:
+    """The plans of CARP, the shortest way first, as far as there is time, and how they were asked for."""
 
     def goes_on(visits: int) -> bool:
         return seconds is None or spent() + visit * visits < seconds
 
-    order = nearest_first(fleet)
+    ways = _ways(fleet)
+    order = _nearest_first(ways)
+    gone, whole, asked = 0, int(ways.sum()) + 1, ALONE
     for robot in order:
-        if not goes_on(fleet.visits):
+        gone += int(ways[robot])
+        at = spent()
+        if seconds is not None and at + visit * fleet.visits >= seconds:
             break
-        plan_again(fleet, robot)
+        is_late = seconds is not None and at > seconds * (UNHURRIED + PACE * gone / whole)
+        plan_again(fleet, robot, asked=GREEDY if is_late else ALONE)
+        asked = GREEDY if is_late else asked
     if len(fleet.order) < len(order) and (seconds is None or 2 * spent() < seconds):
-        other = plan_holding_starts(fleet.instance, order, goes_on)
-        if len(other.plans) > len(fleet.order):
-            return other
-    return Solution.of(fleet.instance, fleet.plans)
+        other = plan_holding_starts(fleet.instance, order, goes_on, asked)
+        if len(other.order) > len(fleet.order):
+            fleet = other
+    return fleet, asked
 
 
 def nearest_first(fleet: PlannedFleet) -> list[int]:
-    """The robots, nearest first; by estimates where not all guides fit, as these would be made twice."""
-    if fleet.keeps_all_guides:
-        ways = np.array([fleet.ticks_to_goal(robot) for robot in range(len(fleet.instance.robots))])
-    else:
-        crowd = crowd_of(fleet.instance)
-        ways = near(crowd, landmarks_of(crowd)) * np.array([each.pace for each in fleet.instance.robots])
+    """The robots, nearest first."""
+    return _nearest_first(_ways(fleet))
+
+
+def _nearest_first(ways: Longs) -> list[int]:
     return [int(robot) for robot in np.argsort(ways, kind="stable")]
+
+
+def _ways(fleet: PlannedFleet) -> Longs:
+    """The ticks of the shortest way of each robot; estimates where not all guides fit, as these would be made twice."""
+    if fleet.keeps_all_guides:
+        return np.array([fleet.ticks_to_goal(robot) for robot in range(len(fleet.instance.robots))], np.int64)
+    crowd = crowd_of(fleet.instance)
+    paces = np.array([each.pace for each in fleet.instance.robots], np.int64)
+    return np.multiply(near(crowd, landmarks_of(crowd)), paces, dtype=np.int64)

@@ -12,11 +12,14 @@ from collections.abc import Callable, Mapping, Sequence
 
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.settling import plan_again
-from carp_spec import Instance, Plan, Solution, Visit
+from carp_optimized.state.arrays import ALONE
+from carp_spec import Instance, Plan, Visit
 
 
-def plan_holding_starts(instance: Instance, order: Sequence[int], goes_on: Callable[[int], bool]) -> Solution:
-    """The plans of one pass over the robots of the order, as long as it goes on after so many visits."""
+def plan_holding_starts(
+    instance: Instance, order: Sequence[int], goes_on: Callable[[int], bool], asked: int = ALONE
+) -> PlannedFleet:
+    """A fleet with the plans of one pass over the robots of the order, as long as it goes on after so many visits."""
     fleet = PlannedFleet(instance)
     held = _Held(instance, order)
     fleet.commit([_standing(instance, robot) for robot in held.robots])
@@ -24,9 +27,9 @@ def plan_holding_starts(instance: Instance, order: Sequence[int], goes_on: Calla
         if not goes_on(fleet.visits):
             break
         fleet.withdraw(held.give_up(robot))
-        plan_again(fleet, robot)
+        plan_again(fleet, robot, asked=asked)
     fleet.withdraw([*held.robots])
-    return Solution.of(instance, fleet.plans)
+    return fleet
 
 
 def _standing(instance: Instance, robot: int) -> Plan:

@@ -17,8 +17,7 @@ import numpy as np
 
 from carp_optimized import passes
 from carp_optimized.fleet import PlannedFleet
-from carp_optimized.queries.search import ALONE
-from carp_optimized.state.arrays import NONE
+from carp_optimized.state.arrays import ALONE, NONE
 from carp_spec import Group, Instance, Plan, Resource, ResourceGraph, ResourceId, RobotId, Visit, total_cost
 from carp_spec.joint_rules import JOINT_RULES
 from carp_spec.rule import Violation

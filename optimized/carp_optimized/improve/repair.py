@@ -17,7 +17,8 @@ from carp_optimized.improve.joint_plans import joint_plans
 from carp_optimized.lacam.search import plans_by_steps
 from carp_optimized.orderings import carp
 from carp_optimized.planners import polish_while
-from carp_optimized.settling import settled
+from carp_optimized.settling import plan_each, settled
+from carp_optimized.state.arrays import ALONE
 from carp_spec import Instance, Plan, RobotId, Solution
 from carp_spec.joint_rules import JOINT_RULES
 from carp_spec.requests import sound_solution
@@ -60,7 +61,9 @@ def repair(instance: Instance, solution: Solution, goes_on: Callable[[], bool] =
     return solution if solution == given or not goes_on() else settled(instance, solution, goes_on)
 
 
-def plan_failed_first(instance: Instance, solution: Solution, goes_on: Callable[[], bool] = lambda: True) -> Solution:
+def plan_failed_first(
+    instance: Instance, solution: Solution, goes_on: Callable[[], bool] = lambda: True, asked: int = ALONE
+) -> Solution:
     """The plans of the best of some passes of CARP, each with the robots first that the one before left out.
 
     The solution itself, if no pass plans more robots. A pass that is not over when it goes on no more counts too.
@@ -68,7 +71,10 @@ def plan_failed_first(instance: Instance, solution: Solution, goes_on: Callable[
     fleet = PlannedFleet(instance)
     order = [fleet.index(robot) for robot in (*solution.unplanned, *solution.order)]
     for _ in range(PASSES):
-        carp(fleet, order, goes_on)
+        if asked == ALONE:
+            carp(fleet, order, goes_on)
+        else:
+            plan_each(fleet, order, goes_on, asked)
         planned = {*fleet.order}
         if len(planned) > len(solution.plans):
             solution = Solution.of(instance, fleet.plans)

@@ -14,7 +14,9 @@ from carp_optimized.state.arrays import (
     FURTHER,
     LARGEST,
     LOW,
+    NEVER,
     NONE,
+    SOON,
     TICK_BITS,
     TOO_FAR,
     UNREACHABLE,
@@ -22,6 +24,8 @@ from carp_optimized.state.arrays import (
     State,
 )
 
+GREED = 2  # of a greedy query: its h counts so many times more
+EFFORT, LEAST_EFFORT = 16, 1024  # of a query for what is found soon: expansions for each tick to the goal, and besides
 MOST_LEVELS = 256  # the longest duration, where guides are made level by level
 
 
@@ -101,6 +105,18 @@ def key_of(entry: int, toll: int, opens: int) -> int:
     if key >> 32 > opens:
         return key
     return ((toll & LOW) << TICK_BITS) + entry + FIRST
+
+
+@inlined
+def greedy_f(entry: int, to_goal: int, opens: int, greed: int) -> int:
+    """The f of a greedy query: h counts more, and all ways to the goal take until it `opens`."""
+    return max(entry + to_goal, opens) + min(to_goal * greed, LARGEST)
+
+
+@inlined
+def effort_of(asked: int, to_goal: int) -> int:
+    """The expansions after which a query ends without a plan; `NEVER` but for `SOON` and `GREEDY`."""
+    return EFFORT * to_goal + LEAST_EFFORT if asked >= SOON else NEVER
 
 
 @compiled

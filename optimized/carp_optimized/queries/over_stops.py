@@ -7,9 +7,21 @@ is not free for ever in time, or no windows lead back from it. A label is a wind
 
 from carp_optimized.jit.compiling import RecordsExhausted, RoomExhausted, TicksExhausted, compiled, inlined
 from carp_optimized.jit.kinds import Ints, Longs
-from carp_optimized.queries.guides import guide_of, guide_slot
+from carp_optimized.queries.guides import GREED, effort_of, greedy_f, guide_of, guide_slot
 from carp_optimized.queries.ways_back import CUT_OFF, FEWEST, look_back
-from carp_optimized.state.arrays import FIRST, LARGEST, NEVER, NONE, TOO_FAR, UNKNOWN, UNREACHABLE, State, Stops
+from carp_optimized.state.arrays import (
+    FIRST,
+    GREEDY,
+    LARGEST,
+    NEVER,
+    NONE,
+    TOO_FAR,
+    UNKNOWN,
+    UNREACHABLE,
+    WHOLE,
+    State,
+    Stops,
+)
 from carp_optimized.state.records import close_record, note_opening, start_record
 from carp_optimized.windows.fitting import STANDING, end_of_run, is_exchange, opens_at, stand, start_of_run
 from carp_optimized.windows.rows import skip_below
@@ -83,14 +95,20 @@ def shortest_of(state: State, robot: int) -> int:
 
 
 @compiled
-def push(state: State, size: int, resource: int, served: int, tick: int, to_goal: int, opens: int, label: int) -> None:
+def push(
+    state: State, size: int, resource: int, served: int, tick: int, to_goal: int, opens: int, greed: int, label: int
+) -> None:
     """Add an entry to the heap of `size` entries, in the order of `query/ties`.
 
-    (key, tie) is (f, h; index, served), or where f is up to `opens`, (h, index; tick, served) with a key below 0.
+    (key, tie) is (f, h; index, served), or where f is up to `opens`, (h, index; tick, served) with a key below 0; in a
+    greedy query (f, h; tick, served) with its own f and a key below 0.
     """
     over = state.stops
     stride = int(over.stride)
-    if tick + to_goal > opens:
+    if greed > 0:
+        key = FIRST + (greedy_f(tick, to_goal, opens, greed) << 31) + to_goal
+        tie = tick * stride + served
+    elif tick + to_goal > opens:
         key = ((tick + to_goal) << 31) + to_goal
         tie = resource * stride + served
     else:
@@ -161,7 +179,7 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     now: int,
     behind: int,
     latest: int,
-    is_whole: bool,
+    asked: int,
 ) -> int:
     """A* from the resource, entered at `enter` and left from `ready` on; the expansion in which it ends, or `NONE`."""
     graph = state.graph
@@ -177,7 +195,8 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     counts_all = behind == NEVER
     opens = opens_at(state, goal, behind) if state.parks else 0
     state.search.opens[0] = opens
-    if is_whole:
+    greed = GREED if asked == GREEDY else 0
+    if asked == WHOLE:
         opens = 0
     elif opens > latest or opens == NEVER:
         return NONE
@@ -186,7 +205,8 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
         if to_goal == UNREACHABLE:
             return NONE
         raise TicksExhausted
-    next_look = FEWEST // 2 if state.parks and counts_all and not is_whole else NEVER
+    effort = effort_of(asked, to_goal)
+    next_look = FEWEST // 2 if state.parks and counts_all and asked != WHOLE else NEVER
     state.search.generation[0] += 1
     base = int(state.search.generation[0]) << 32
     own_slot = stand(state, resource, enter, behind)
@@ -197,7 +217,7 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
     reached[start] = base - tick
     parent[start] = NONE
     state.search.least[0] = tick + to_goal
-    push(state, 0, resource, served, tick, to_goal, opens, start)
+    push(state, 0, resource, served, tick, to_goal, opens, greed, start)
     size = 1
     expansions = 0
     beyond = False
@@ -215,6 +235,8 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
             continue  # reached earlier since this entry was made
         this = expansions
         expansions += 1
+        if expansions >= effort:
+            return NONE
         if expansions >= next_look:
             next_look = look_back(state, robot, NONE, 0, latest, expansions)
             if next_look == CUT_OFF:
@@ -244,7 +266,7 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
                 elif tick + to_goal <= latest:
                     reached[other] = base - tick
                     parent[other] = this
-                    push(state, size, resource, done + 1, tick, to_goal, opens, other)
+                    push(state, size, resource, done + 1, tick, to_goal, opens, greed, other)
                     size += 1
         slot = int(stops.slot[done])
         for edge in range(int(graph.first[resource]), int(graph.first[resource + 1])):
@@ -277,7 +299,7 @@ def search_over_stops(  # noqa: C901, PLR0912, PLR0915 - one hot loop
                     reached[other] = base - entry
                     parent[other] = this
                     entered[window] = max(int(entered[window]), base - entry)
-                    push(state, size, target, done, entry, to_goal, opens, other)
+                    push(state, size, target, done, entry, to_goal, opens, greed, other)
                     size += 1
     if beyond and latest > LARGEST:
         raise TicksExhausted
@@ -296,14 +318,14 @@ def find_over_stops(
     now: int,
     behind: int,
     latest: int,
-    is_whole: bool,
+    asked: int,
 ) -> int:
     """The record of the plan of a robot that is in the resource, after `past` visits from `first` on, or `NONE`.
 
-    With `is_whole` any of the same arrival, as for `WHOLE` in `carp_optimized.queries.search`.
+    It is asked for `ALONE`, `WHOLE`, `SOON` or `GREEDY`, as in `carp_optimized.queries.search`.
     """
     served = served_by(state, robot, first, past)
-    last = search_over_stops(state, robot, resource, enter, ready, served, now, behind, latest, is_whole)
+    last = search_over_stops(state, robot, resource, enter, ready, served, now, behind, latest, asked)
     if last == NONE:
         return NONE
     record = start_record(state, robot, first, past)

@@ -2,20 +2,24 @@
 
 from carp_optimized.jit.blocks import BLOCK, below, lowest, width
 from carp_optimized.jit.compiling import RoomExhausted, TicksExhausted, compiled, inlined
-from carp_optimized.queries.guides import guide_of, guide_slot, key_of, reach_all, toll_of
+from carp_optimized.queries.guides import GREED, effort_of, greedy_f, guide_of, guide_slot, key_of, reach_all, toll_of
 from carp_optimized.queries.heap import push, replace_root
 from carp_optimized.queries.over_stops import find_over_stops, has_goal_alone_left, has_stops
 from carp_optimized.queries.ways_back import CUT_OFF, FEWEST, look_back
 from carp_optimized.state.arrays import (
+    ALONE,
     ASKED,
     FURTHER,
+    GREEDY,
     LARGEST,
     LOW,
     NEVER,
     NO_LIMIT,
     NONE,
+    NOTED,
     TOO_FAR,
     UNKNOWN,
+    WHOLE,
     State,
 )
 from carp_optimized.state.groups import is_grouped
@@ -34,7 +38,6 @@ from carp_optimized.windows.rows import skip_below
 
 EVERY = (1 << BLOCK) - 1
 NO_KEY = (NEVER << 32) + LOW  # above those of all windows
-NOTED, ALONE, WHOLE = range(3)  # what a query is asked for: see `find_any_plan`
 
 
 @compiled
@@ -55,7 +58,8 @@ def find_any_plan(state: State, robot: int, before: int, now: int, behind: int, 
 
     A plan that is to be found must arrive by the tick `latest`. `NOTED` asks for the plan of `query/ties` with what the
     query has read, `ALONE` for the plan, and `WHOLE` for any of the same arrival, once all windows have been expanded
-    from which the goal might be reached before.
+    from which the goal might be reached before. `SOON` asks for the plan if it is found soon, and `GREEDY`
+    for any plan that is.
 
     Only robots of a rank up to `behind` count. A plan that has ended stays as it is. Otherwise the visits entered by
     now are kept, and must fit the windows; a robot without a plan stands at its start since its release.
@@ -75,9 +79,8 @@ def find_any_plan(state: State, robot: int, before: int, now: int, behind: int, 
         return NONE
     if has_stops(state, robot):
         if asked == WHOLE or not has_goal_alone_left(state, robot, first, past):
-            is_whole = asked == WHOLE
-            return find_over_stops(state, robot, first, past, resource, enter, ready, now, behind, latest, is_whole)
-        asked = ALONE
+            return find_over_stops(state, robot, first, past, resource, enter, ready, now, behind, latest, asked)
+        asked = max(asked, ALONE)
         slot = guide_of(state, int(state.robots.destination[robot]))
     else:
         slot = guide_slot(state, robot, resource)
@@ -198,6 +201,14 @@ def note_expansion(state: State, expansions: int, resource: int, enter: int, rea
     return expansions + 1
 
 
+@inlined
+def key_by(entry: int, toll: int, opens: int, greed: int) -> int:
+    """The key of a window, also in a greedy query."""
+    if greed == 0:
+        return key_of(entry, toll, opens)
+    return (greedy_f(entry, toll >> 32, opens, greed) << 32) + (toll & LOW)
+
+
 @compiled
 def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
     state: State,
@@ -266,7 +277,9 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
         return 0
     state.search.least[0] = enter + (toll >> 32)
     last_goal = goal if opens > 0 else NONE
-    may_look = parks and counts_all and (asked == ALONE or (asked == NOTED and not is_bounded))
+    greed = GREED if asked == GREEDY else 0
+    effort = effort_of(asked, toll >> 32)
+    may_look = parks and counts_all and asked != WHOLE and (asked != NOTED or not is_bounded)
     next_look = FEWEST // 2 if may_look else NEVER
     generation = int(state.search.generation[0]) + 1
     state.search.generation[0] = generation
@@ -278,7 +291,7 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
     reached[STANDING] = label - enter
     parent[STANDING] = NONE
     best = STANDING
-    best_key = key_of(enter, toll, opens)
+    best_key = key_by(enter, toll, opens, greed)
     if best_key > largest_key:
         return 0
     size = 0
@@ -304,12 +317,16 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
         resource = int(windows.resource[node])
         enter = label - int(reached[node])
         toll = toll_of(state, slot, resource)
-        if key != key_of(enter, toll, opens):
+        if key != key_by(enter, toll, opens, greed):
             continue  # entered earlier since this entry was made
         if key >= unseen:
             return FURTHER
+        if expansions >= effort:
+            state.search.expansions[0] = UNKNOWN
+            return 0
         if expansions >= next_look:
-            next_look = look_back(state, robot, slot, max(key >> 32, 0), latest, expansions)
+            next_f = max(key >> 32, 0) if greed == 0 else 0
+            next_look = look_back(state, robot, slot, next_f, latest, expansions)
             if next_look == CUT_OFF:
                 state.search.expansions[0] = UNKNOWN
                 return 0
@@ -330,8 +347,7 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
             toll = toll_of(state, slot, target)
             if toll < 0:
                 if toll == FURTHER:
-                    further = (ready << 32) + to_go
-                    unseen = min(unseen, further if further >> 32 > opens else 0)
+                    unseen = min(unseen, max(key_by(ready, to_go, opens, greed), 0))
                 beyond |= toll == TOO_FAR
                 continue
             if is_bounded and (ready << 32) + toll > largest_key:
@@ -378,7 +394,7 @@ def search(  # noqa: C901, PLR0911, PLR0912, PLR0915 - one hot loop
                 if entry > LARGEST or entry + (toll >> 32) > LARGEST:
                     beyond = True
                     continue
-                key = key_of(entry, toll, opens)
+                key = key_by(entry, toll, opens, greed)
                 if key > largest_key:
                     break
                 reached[window] = label - entry

@@ -30,6 +30,7 @@ QUEUED, TURN, MARKS, CHANCE, MARKED, NOW, FORGOTTEN = range(7)  # the counts of 
 PLANS = 62  # plans that a set of plans in 64 bits can hold; the bit PLANS stands for all others
 ANSWERS = 512  # of queries, that a round keeps
 NO_LIMIT = 1 << 62  # of a cost
+NOTED, ALONE, WHOLE, SOON, GREEDY = range(5)  # what a query is asked for: see `find_any_plan`
 UNASKED = -2  # no record yet
 LATE = -2  # the plan of an answer is not below the limit
 

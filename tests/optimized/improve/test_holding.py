@@ -6,7 +6,7 @@ from tests.profiles import draws
 import carp_optimized
 from carp_experiments.measuring.tiled_plant import tiled_instance
 from carp_optimized.improve.holding import plan_holding_starts
-from carp_spec import Carp, judge
+from carp_spec import Carp, Solution, judge
 from carp_spec.permutations import splitmix64
 from carproof import plan_within
 from carproof.testing.random_instances import Draw, Mix, draw_instance
@@ -27,7 +27,9 @@ def test_plans_are_lawful_whatever_robots_share_at_their_starts() -> None:
     planned: list[int] = []
     for number in range(draws(5000)):
         instance = draw_instance(Draw(splitmix64(number)), MIX)
-        solution = plan_holding_starts(instance, range(len(instance.robots)), lambda _: True)
+        solution = Solution.of(
+            instance, plan_holding_starts(instance, range(len(instance.robots)), lambda _: True).plans
+        )
         assert judge(instance, solution).valid
         planned.append(len(solution.plans))
     assert sum(planned) > len(planned)
@@ -41,6 +43,6 @@ def test_a_pass_that_is_broken_off_leaves_no_robot_at_its_start() -> None:
         visits.append(made)
         return len(visits) <= 5
 
-    solution = plan_holding_starts(instance, range(20), goes_on)
+    solution = Solution.of(instance, plan_holding_starts(instance, range(20), goes_on).plans)
     assert judge(instance, solution).valid
     assert len(solution.plans) <= 5

@@ -16,8 +16,7 @@ from tests.profiles import draws
 from carp_optimized import passes
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.neighbourhood.replanning import could_use_freed, forget_freed, note_freed
-from carp_optimized.queries.search import NOTED
-from carp_optimized.state.arrays import NEVER, NONE, UNKNOWN
+from carp_optimized.state.arrays import NEVER, NONE, NOTED, UNKNOWN
 from carp_reference.problem import ticks_to_goal
 from carp_spec import Instance, Plan, ResourceId, RobotId
 from carp_verify.lemmas.freed_stays_come_too_late import least_f

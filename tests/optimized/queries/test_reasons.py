@@ -13,8 +13,8 @@ from carp_optimized import passes
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.neighbourhood.answers import number_plan, start_answers
 from carp_optimized.queries.relevant_plans import reasons
-from carp_optimized.queries.search import ALONE, find_plan_by
-from carp_optimized.state.arrays import NEVER, NONE, PLANS
+from carp_optimized.queries.search import find_plan_by
+from carp_optimized.state.arrays import ALONE, NEVER, NONE, PLANS
 from carp_optimized.state.room import no_answers
 from carproof import Following, Instance, Plan, Resource, ResourceGraph, Robot, Visit
 from carproof.testing.strategies import FleetUnderWay, Sizes, fleets_under_way

@@ -1,12 +1,14 @@
 """Queries for a plan alone look at few windows, and arrive when those do that look at all that matter."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pytest
 
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.orderings import carp
-from carp_optimized.queries.search import ALONE, WHOLE
+from carp_optimized.state.arrays import ALONE, GREEDY, SOON, WHOLE
+from carp_spec import Plan, Solution, Stop, Visit, judge
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
 
 CROWDS = {
@@ -76,3 +78,30 @@ def test_a_goal_that_is_free_late_costs_few_windows() -> None:
             fleet.find(robot, None, 0, asked)
             counts[asked] += int(fleet.state.search.expansions[0])
     assert 4 * counts[ALONE] < 3 * counts[WHOLE]
+
+
+@pytest.mark.parametrize("crowd", CROWDS)
+def test_a_greedy_plan_breaks_no_rule_and_arrives_no_earlier(crowd: str) -> None:
+    instance, missed = CROWDS[crowd], 0
+    for fleet, robot in beside_others(crowd):
+        alone, greedy = fleet.find(robot, None, 0), fleet.find(robot, None, 0, GREEDY)
+        assert fleet.find(robot, None, 0, SOON) == alone
+        missed += alone is not None and greedy is None
+        if greedy is not None:
+            assert alone is not None
+            assert alone.visits[-1].enter <= greedy.visits[-1].enter
+            assert judge(instance, Solution.of(instance, [*fleet.plans, greedy])).valid
+    assert missed <= 1
+
+
+@pytest.mark.parametrize("stops", [0, 1])
+def test_a_query_for_what_is_found_soon_gives_up(stops: int) -> None:
+    """The goal is free late, so the query waits in all cells of the map."""
+    instance = grid_instance(Grid(60, 60), Fleet(robots=2, seed=1))
+    one, other = instance.robots
+    asked = replace(other, stops=(*(Stop(each.start) for each in (one,) * stops), Stop(one.goal)))
+    fleet = PlannedFleet(replace(instance, robots=(replace(one, start=one.goal), asked)))
+    fleet.commit([Plan(one.id, (Visit(one.goal, 0, 5000),))])
+    assert fleet.find(1, None, 0) is not None
+    assert fleet.find(1, None, 0, SOON) is None
+    assert fleet.find(1, None, 0, GREEDY) is None
