@@ -60,9 +60,9 @@ def broken(violations: Iterable[Violation]) -> Iterator[Finding]:
 
 
 @rule("program/alive", "A program answers until it is asked to stop, and then it ends with 0.", DESIGN)
-def is_alive(code: int | None) -> bool:
-    """Whether a process with this exit code, `None` while it runs, has kept it."""
-    return code is None or code == 0
+def is_alive(code: int) -> bool:
+    """Whether a process that ended with this exit code, once it was asked to stop, has kept it."""
+    return code == 0
 
 
 IN_TIME = Code("program/in-time", "Each answer is complete within the time limit, however it arrives.", DESIGN)

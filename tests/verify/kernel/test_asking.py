@@ -1,14 +1,16 @@
 """The questions to the kernel's program, and the results of its answers. Shell scripts stand in for it."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import msgspec
 import pytest
 
 import carp_verify.kernel
-from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot
+from carp_spec import Instance, Refusal, Resource, ResourceGraph, Robot, Stop
 from carp_spec.documents.decoding import write
 from carp_spec.documents.instances import instance_document
+from carp_spec.limits import goals_stand_alone
 from carp_verify.kernel import (
     PROGRAM,
     VARIABLE,
@@ -18,6 +20,7 @@ from carp_verify.kernel import (
     is_answer,
     program,
     program_is_there,
+    replies,
     request,
     verify_proof,
     version,
@@ -38,7 +41,7 @@ def folder_of_kernel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def answers(folder: Path, *lines: str, end: str = "\\n") -> None:
     """Let the kernel of the folder answer these lines, whatever it is asked, and end as one that refuses does."""
-    note = f'for each in "$@"; do echo "$each" >> "{folder}/arguments"; cat "$each" >> "{folder}/files"; done'
+    note = f'for each in "$@"; do echo "$each" >> "{folder}/arguments"; cat "$each"/* >> "{folder}/files"; done'
     prints = "".join(f"printf '%s{end}' '{line}'\n" for line in lines)
     (folder / PROGRAM).write_text(
         f'#!/bin/sh\n({note}) 2> /dev/null\ncat > "{folder}/input"\n{prints}echo no >&2\nexit 1\n'
@@ -80,6 +83,24 @@ def test_a_request_behind_a_line_without_an_end_has_no_answer(folder: Path) -> N
     assert ask([b"{}\n"])[0].accepted
 
 
+def test_a_kernel_that_takes_too_long_has_answered_the_lines_that_it_ended(folder: Path) -> None:
+    answers(folder, ACCEPTED, REFUSED)
+    script = folder / PROGRAM
+    script.write_text(script.read_text().replace("echo no", "printf cut\nexec sleep 60\necho no"))
+    assert replies([b"{}\n"] * 3, 3) == [ACCEPTED, REFUSED]
+    answers(folder)
+    script.write_text(script.read_text().replace("echo no", "exec sleep 60\necho no"))
+    assert replies([b"{}\n"], 0.1) == []
+
+
+def test_the_kernel_is_not_asked_for_bounds_of_robots_with_stops() -> None:
+    to_and_fro = replace(INSTANCE, robots=(replace(INSTANCE.robots[0], stops=(Stop("b"), Stop("a"))),))
+    assert request("verify-query", to_and_fro)
+    with pytest.raises(Refusal) as refused:
+        request("verify-bound", to_and_fro)
+    assert refused.value.rule == goals_stand_alone.id
+
+
 def test_the_version_is_asked_of_the_program_itself(folder: Path) -> None:
     answers(folder, '{"kernel": "7", "verdict": "bad input"}')
     assert version() == "carproof-kernel 7"
@@ -91,6 +112,7 @@ def test_a_proof_is_verified_from_its_files(folder: Path) -> None:
     assert (verdict.accepted, verdict.rule, verdict.message) == (False, "bound/total", "too much")
     command, directory = (folder / "arguments").read_text().splitlines()
     assert (command, Path(directory).exists()) == ("verify-proof", False)
+    assert (folder / "files").read_bytes() == b"stepsclaim"
 
 
 @pytest.mark.parametrize(

@@ -227,6 +227,7 @@ ONE_OF_TWO = committed(BEHIND, first=FIRST_GOES)
 OPTIMA: Sequence[Row] = (
     (OPTIMUM, BEST, {}),
     (OPTIMUM, UNDECIDED, {}),
+    (OPTIMUM, changed(UNDECIDED, lower=6), {}),
     (OPTIMUM, changed(UNDECIDED, lower=7), {}),
     (OPTIMUM, changed(UNDECIDED, lower=8), {Level.OPTIMAL: "program/lower"}),
     (OPTIMUM, changed(UNDECIDED, cost=9), {Level.SOUND: "cost/total"}),

@@ -98,6 +98,7 @@ def test_a_planner_of_documents_is_one_of_models() -> None:
 
     assert Function(planner, "mine", documents=True).ask(ALONE) == PLANNED
     assert [each["id"] for each in seen[0]["robots"]] == ["new"]
+    assert fault_of(planner).rule == "program/result"
     for returned, words in ((object(), "cannot be written as JSON"), ({**written, "plans": 1}, "the result of plan")):
         finding = fault_of(lambda _, returned=returned: returned, documents=True)
         assert finding.rule == "program/result"
