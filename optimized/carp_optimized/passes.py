@@ -10,7 +10,7 @@ from carp_optimized.state.arrays import ALONE, NEVER, NONE, NOTED, TOO_FAR, UNAS
 from carp_optimized.state.natives import state_at
 from carp_optimized.state.records import close_record, cost_of, start_record
 from carp_optimized.windows.fitting import still_found
-from carp_optimized.windows.reserving import reserve, withdraw
+from carp_optimized.windows.reserving import book_all, reserve
 
 
 @entry
@@ -66,17 +66,13 @@ def reach_stop(native: Native[State], number: int) -> int:
 @entry
 def reserve_all(native: Native[State], plans: Ints) -> None:
     """Reserve plans that fit."""
-    state = state_at(native)
-    for plan in plans:
-        reserve(state, int(plan))
+    book_all(state_at(native), plans, True)
 
 
 @entry
 def withdraw_all(native: Native[State], plans: Ints) -> None:
     """Withdraw plans that are reserved."""
-    state = state_at(native)
-    for plan in plans:
-        withdraw(state, int(plan))
+    book_all(state_at(native), plans, False)
 
 
 @entry

@@ -14,7 +14,7 @@ import carp_optimized
 import carproof
 from carp_experiments.measuring.tiling import core_of, tiled
 from carp_optimized.fleet import PlannedFleet
-from carp_optimized.improve.anytime import nearest_first
+from carp_optimized.improve.anytime import nearest_first, shortest_ways
 from carp_optimized.improve.holding import plan_holding_starts
 from carp_spec import Carp, Instance, Solution, judge
 from carproof.layouts import Settings, import_layout, read_layout
@@ -79,7 +79,7 @@ def instance_of_tiles(layout: Layout, robots: int, resources: int = RESOURCES) -
 
 def _row(instance: Instance) -> str:
     """The numbers of a fleet: its plans by CARP alone, where each holds its start, and within ten seconds."""
-    by_way = nearest_first(PlannedFleet(instance))
+    by_way = nearest_first(shortest_ways(PlannedFleet(instance)))
     row: list[object] = [len(instance.robots), len(instance.graph.resources), len(instance.graph.groups)]
     planners: tuple[Callable[[], Solution], ...] = (
         lambda: carp_optimized.plan(instance, Carp()),

@@ -102,8 +102,8 @@ def _first_plans(
     def goes_on(visits: int) -> bool:
         return seconds is None or spent() + visit * visits < seconds
 
-    ways = _ways(fleet)
-    order = _nearest_first(ways)
+    ways = shortest_ways(fleet)
+    order = nearest_first(ways)
     gone, whole, asked = 0, int(ways.sum()) + 1, ALONE
     for robot in order:
         gone += int(ways[robot])
@@ -120,16 +120,12 @@ def _first_plans(
     return fleet, asked
 
 
-def nearest_first(fleet: PlannedFleet) -> list[int]:
-    """The robots, nearest first."""
-    return _nearest_first(_ways(fleet))
-
-
-def _nearest_first(ways: Longs) -> list[int]:
+def nearest_first(ways: Longs) -> list[int]:
+    """The robots, those with the shortest ways first."""
     return [int(robot) for robot in np.argsort(ways, kind="stable")]
 
 
-def _ways(fleet: PlannedFleet) -> Longs:
+def shortest_ways(fleet: PlannedFleet) -> Longs:
     """The ticks of the shortest way of each robot; estimates where not all guides fit, as these would be made twice."""
     if fleet.keeps_all_guides:
         return np.array([fleet.ticks_to_goal(robot) for robot in range(len(fleet.instance.robots))], np.int64)

@@ -1,6 +1,7 @@
 """Reserving a plan and withdrawing it, which are exact inverses."""
 
 from carp_optimized.jit.compiling import compiled, inlined
+from carp_optimized.jit.kinds import Ints
 from carp_optimized.state.arrays import GROUPED, NEVER, NONE, Rows, State
 from carp_optimized.state.groups import is_within
 from carp_optimized.windows.fitting import fits
@@ -17,8 +18,8 @@ def reserve(state: State, record: int) -> None:
 @compiled
 def reserve_but(state: State, record: int, head: int, tail: int) -> None:
     """Reserve the plan where its first `head` and last `tail` stays are reserved."""
-    state.reserved[int(state.records.robot[record])] = record
     book(state, record, head, tail, True)
+    sweep(state, record)
 
 
 @compiled
@@ -30,15 +31,38 @@ def withdraw(state: State, record: int) -> None:
 @compiled
 def withdraw_but(state: State, record: int, head: int, tail: int) -> None:
     """Undo `reserve_but`."""
-    state.reserved[int(state.records.robot[record])] = NONE
     book(state, record, head, tail, False)
+    sweep(state, record)
+
+
+@compiled
+def book_all(state: State, plans: Ints, is_added: bool) -> None:
+    """Reserve plans, which must fit, or withdraw them; windows in groups are made again once for all of them.
+
+    Stays in groups are put in and taken out without a look at windows, so that these may be old until the end.
+    """
+    for plan in plans:
+        book(state, int(plan), 0, 0, is_added)
+    if state.graph.group.size > 0:
+        state.sweep.now[0] += 1
+        for plan in plans:
+            sweep_plan(state, int(plan))
+
+
+@inlined
+def sweep(state: State, record: int) -> None:
+    """Make windows in groups again after a change of the plan."""
+    if state.graph.group.size > 0:
+        state.sweep.now[0] += 1
+        sweep_plan(state, record)
 
 
 @compiled
 def book(state: State, record: int, head: int, tail: int, is_added: bool) -> None:
-    """Add or drop the stays of the plan, but for its first `head` and last `tail`."""
+    """Add or drop the stays of the plan, but for its first `head` and last `tail`; not the windows in groups."""
     records = state.records
     robot = int(records.robot[record])
+    state.reserved[robot] = record if is_added else NONE
     rank = int(state.rank[robot])
     first = int(records.visits_at[record])
     last = first + int(records.visits[record]) - 1
@@ -63,8 +87,6 @@ def book(state: State, record: int, head: int, tail: int, is_added: bool) -> Non
             else:
                 sweep_windows(state.windows, state.stays, resource, int(state.graph.capacity[resource]), state.gap)
         source = resource
-    if state.graph.group.size > 0:
-        sweep_plan(state, record)
 
 
 @compiled

@@ -160,10 +160,9 @@ def sweep_group(state: State, group: int) -> None:
 
 @compiled
 def sweep_plan(state: State, record: int) -> None:
-    """Make the windows again of all resources in the groups of those that the plan visits."""
+    """Make the windows again of all resources in the groups of those that the plan visits, as `sweep_group` does."""
     graph = state.graph
     records = state.records
-    state.sweep.now[0] += 1
     first = int(records.visits_at[record])
     for visit in range(first, first + int(records.visits[record])):
         resource = int(records.resource[visit])

@@ -45,31 +45,36 @@ def assert_windows_are(fleet: PlannedFleet, instance: Instance, plans: Sequence[
         assert windows == free_windows(constraints_on(instance.graph, plans, resource.id))
 
 
+def some_of(positions: Sequence[int], random: Random) -> list[int]:
+    """Some of the positions, one at least."""
+    return random.sample(positions, random.randint(1, len(positions)))
+
+
 @settings(max_examples=draws(300))
 @given(planned_instances(SIZES), st.randoms(use_true_random=False))
 def test_withdrawing_undoes_reserving_in_any_order(planned: PlannedInstance, random: Random) -> None:
     plans = list(planned.solution.plans)
     fleet = PlannedFleet(planned.instance)
-    records = [fleet.record(plan) for plan in plans]
+    records = np.array([fleet.record(plan) for plan in plans], np.int32)
     there: list[int] = []
     empty = held(fleet)
     for _ in range(2 * len(plans)):
         absent = [position for position in range(len(plans)) if position not in there]
         before = held(fleet)
         if absent and (not there or random.random() < 0.6):
-            position = random.choice(absent)
-            record = np.array([records[position]], np.int32)
-            passes.reserve_all(fleet.native, record)
+            added = some_of(absent, random)
+            passes.reserve_all(fleet.native, records[added])
             after = held(fleet)
-            passes.withdraw_all(fleet.native, record)
+            passes.withdraw_all(fleet.native, records[added])
             assert held(fleet) == before
-            passes.reserve_all(fleet.native, record)
+            for position in added:
+                passes.reserve_all(fleet.native, records[[position]])
             assert held(fleet) == after
-            there.append(position)
+            there += added
         elif there:
-            position = there.pop(random.randrange(len(there)))
-            passes.withdraw_all(fleet.native, np.array([records[position]], np.int32))
+            gone = some_of(there, random)
+            passes.withdraw_all(fleet.native, records[gone])
+            there = [position for position in there if position not in gone]
         assert_windows_are(fleet, planned.instance, [plans[position] for position in there])
-    for position in there:
-        passes.withdraw_all(fleet.native, np.array([records[position]], np.int32))
+    passes.withdraw_all(fleet.native, records[there])
     assert held(fleet) == empty
