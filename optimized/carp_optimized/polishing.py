@@ -1,6 +1,7 @@
 """A fleet polished, round by round, until a clock or a number of rounds ends it."""
 
 from collections.abc import Callable
+from itertools import takewhile
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from carp_optimized.state.arrays import FORGOTTEN, NONE, NOW, QUEUED, TURN, UNAS
 
 ROUNDS = 50  # in one compiled call, if there are not so many
 VISITS = 20_000  # in all plans together
+PART = 32  # robots between two looks at a clock
 
 
 def polish_fleet(
@@ -27,7 +29,7 @@ def polish_fleet(
 
     Robots keep what they have done by the tick `now`. `advance` gets rounds, unplanned robots and total.
     """
-    polishing = to_polish(fleet, seed, now)
+    polishing = to_polish(fleet, seed, now, goes_on)
     played = play(fleet, polishing, 0)
     most = rounds_between_looks(fleet)
     while played != last and goes_on():
@@ -44,13 +46,19 @@ def rounds_between_looks(fleet: PlannedFleet) -> int:
     return max(ROUNDS * VISITS // max(fleet.visits, VISITS), 1)
 
 
-def to_polish(fleet: PlannedFleet, seed: int, now: int = 0) -> Native[Polish]:
-    """The arrays for polishing this fleet at a tick, from the plans that it has."""
+def to_polish(
+    fleet: PlannedFleet, seed: int, now: int = 0, goes_on: Callable[[], bool] = lambda: True
+) -> Native[Polish]:
+    """The arrays for polishing this fleet at a tick, from the plans that it has.
+
+    Robots whose costs alone are not found while it goes on begin no round.
+    """
     limits.refuse_tick("$.now", now)
     able = fleet.robots if now == 0 else np.sort(fleet.planned)
     followed = fleet.held if now > 0 else np.full(fleet.held.size, NONE, np.int32)
     costs = np.full(fleet.held.size, NONE, np.int64)
-    fleet.call(lambda: passes.cost_each_alone(fleet.empty, able, followed, now, costs))
+    for some in takewhile(lambda _: goes_on(), np.split(able, range(PART, able.size, PART))):
+        fleet.call(lambda some=some: passes.cost_each_alone(fleet.empty, some, followed, now, costs))  # type: ignore[misc]
     past = np.zeros(fleet.held.size, np.int32)
     for robot in fleet.planned if now > 0 else ():
         past[robot] = sum(enter <= now for enter in fleet.columns(int(fleet.held[robot])).enters)

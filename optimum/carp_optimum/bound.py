@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from carp_optimum.sat.solver import Deadline, TimeOver
 from carp_spec import Instance
-from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
+from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, DeadlinesDocument
 from carp_spec.documents.instances import digest
 from carp_spec.inputs.options import BOUND_SECONDS, require_limits
 from carp_spec.inputs.values import require_instance
@@ -77,7 +77,7 @@ def lower_bound(
     Without a limit the search takes 10 seconds.
     With steps alone, the same instance gives the same certificate on one kind of processor. `on_step` is called after
     each step, and now and then while claims are searched for; `clock` gives nanoseconds. Over stops, cuts alone are
-    searched for. Raises `Refusal` for numbers that are too large.
+    searched for. Robots that there is no time for count as 0. Raises `Refusal` for numbers that are too large.
     """
     require_instance(instance)
     require_limits(seconds=seconds, steps=steps)
@@ -86,8 +86,8 @@ def lower_bound(
         return _by_prices(instance, seconds, steps, on_step, clock, enough)
     from carp_optimum.claims.disjoint_cuts import bound_by_cuts  # noqa: PLC0415 - it loads a solver
 
-    check = _limit(seconds, steps, PARTS, clock)
-    return bound_by_cuts(instance, check, lambda count, bound: on_step(Progress(count, bound)))
+    whole, check = (_limit(seconds, each, PARTS, clock) for each in (None, steps))
+    return bound_by_cuts(instance, lambda: whole(0), check, lambda count, bound: on_step(Progress(count, bound)))
 
 
 def _by_prices(
@@ -125,16 +125,18 @@ def _by_prices(
 
     end = _limit(seconds, steps, PARTS, clock, lambda: WAYS_AT_END * search.longest)
     by_programme, by_steps = limits(PROGRAMME_PARTS), limits(STEP_PARTS)
-    search = PriceSearch(instance, SCALE, clock)
+    whole = _limit(seconds, None, PARTS, clock)
+    search = PriceSearch(instance, SCALE, clock, lambda: whole(0))
+    report()
+    if not search.begun:
+        return _certificate(search)
     search.within = lambda: end(0)
     sights = SightSearch(search)
-    report()
     with suppress(TimeOver):
         claims = DeadlineSearch(search), sights
         is_small = len(instance.robots) * search.horizon <= MOST_TICKS
         if not (is_small and _by_programme(*claims, by_programme)):
             _by_steps(*claims, by_steps)
-    search.restore()
     report()
     return _certificate(search)
 
@@ -257,16 +259,19 @@ def _limit(
 
 
 def _certificate(search: "PriceSearch") -> BoundDocument:
-    """What the prices prove in the steps that the checker takes; the sum of shortest ways where that is more."""
+    """What the best prices prove in the steps that the checker takes; the sum of shortest ways where that is more."""
     from carp_optimum.lagrangian.price_search import PriceLists  # noqa: PLC0415 - numba is slow to load
 
-    prices, priced, robots = search.prices(), search.priced_deadlines(), search.least_costs()
-    parts = sum(least or 0 for _, least in robots) - int(search.dual.prices.worth[0])
-    parts -= sum(each.price * (len(each.robots) - 1) for each in priced)
-    shortest = search.shortest_costs()
-    sure = sum(least or 0 for _, least in shortest)
-    if parts < sure:
-        prices, priced, robots, parts = PriceLists((), (), ()), (), shortest, sure
+    prices, robots = PriceLists((), (), ()), search.shortest_costs()
+    priced: tuple[DeadlinesDocument, ...] = ()
+    parts = sum(least or 0 for _, least in robots)
+    if search.best > search.shortest:
+        search.restore()
+        costs, fees = search.least_costs(), search.priced_deadlines()
+        proved = sum(least or 0 for _, least in costs) - int(search.dual.prices.worth[0])
+        proved -= sum(each.price * (len(each.robots) - 1) for each in fees)
+        if proved >= parts:
+            prices, priced, robots, parts = search.prices(), fees, costs, proved
     return BoundDocument(
         format=BOUND_FORMAT,
         instance=digest(search.instance),

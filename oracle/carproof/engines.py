@@ -1,12 +1,12 @@
 """The planners to choose from, each loaded when it is first used."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
-from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, Stop, total_cost
+from carp_spec import Instance, Neighbourhood, Plan, Planner, Refusal, RobotId, Solution, Stop, plan_cost
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.execution.traces import Trace
 from carproof.progress import progress
@@ -169,13 +169,22 @@ def sum_of_shortest_paths(instance: Instance, robots: Iterable[RobotId], fleet: 
 
     A compiled fleet of the instance, if there is one, knows most of them.
     """
-    asked = tuple(robots)
-    try:
-        known = fleet or fleet_of(instance, ())
-        return sum(known.ticks_to_goal(known.index(robot)) for robot in asked)
-    except Refusal:  # numbers that only the reference holds
-        alone = (engine_named("reference").query(instance, (), robot) for robot in asked)
-        return total_cost(instance, [plan for plan in alone if plan is not None])
+    return sum(shortest_paths(instance, robots, fleet))
+
+
+def shortest_paths(instance: Instance, robots: Iterable[RobotId], fleet: "PlannedFleet | None" = None) -> Iterator[int]:
+    """The robots' costs if each were alone, one after the other; 0 of a robot without a path."""
+    with suppress(Refusal):  # numbers that only the reference holds
+        fleet = fleet or fleet_of(instance, ())
+    for robot in robots:
+        try:
+            found = None if fleet is None else fleet.ticks_to_goal(fleet.index(robot))
+        except Refusal:
+            found = None
+        if found is None:
+            plan = engine_named("reference").query(instance, (), robot)
+            found = 0 if plan is None else plan_cost(instance, plan)
+        yield found
 
 
 def have_plans_beside(

@@ -20,7 +20,7 @@ TimedMove: TypeAlias = tuple[int, Move]
     "enters up to, not including, the tick at which it leaves.",
     f"paper, section II; {MORS}",
 )
-def capacity_is_kept(instance: Instance, plans: Sequence[Plan]) -> Iterator[Breach]:
+def capacity_is_kept(instance: Instance, plans: Iterable[Plan]) -> Iterator[Breach]:
     return _crowded(instance, plans, instance.graph.constraints[: len(instance.graph.resources)])
 
 
@@ -30,7 +30,7 @@ def capacity_is_kept(instance: Instance, plans: Sequence[Plan]) -> Iterator[Brea
     "moves within the group.",
     DESIGN,
 )
-def groups_are_kept(instance: Instance, plans: Sequence[Plan]) -> Iterator[Breach]:
+def groups_are_kept(instance: Instance, plans: Iterable[Plan]) -> Iterator[Breach]:
     if instance.graph.groups:
         yield from _crowded(instance, plans, instance.graph.groups)
 
@@ -41,14 +41,14 @@ def groups_are_kept(instance: Instance, plans: Sequence[Plan]) -> Iterator[Breac
     "leaves it at tick t still counts at t. Where there is room for one, a robot enters only after a free tick.",
     DESIGN,
 )
-def following_is_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator[Breach]:
+def following_is_avoided(instance: Instance, plans: Iterable[Plan]) -> Iterator[Breach]:
     if instance.following == "forbidden":
         more = ", with a free tick after each robot"
         yield from _crowded(instance, plans, instance.graph.constraints, instance.gap, more)
 
 
 def _crowded(
-    instance: Instance, plans: Sequence[Plan], constraints: Sequence[Group], gap: int = 0, more: str = ""
+    instance: Instance, plans: Iterable[Plan], constraints: Sequence[Group], gap: int = 0, more: str = ""
 ) -> Iterator[Breach]:
     """The constraints with too many robots if each stay lasts `gap` ticks longer, and where a robot is the first."""
     changes: dict[ResourceId, list[Change]] = defaultdict(list)
@@ -101,7 +101,7 @@ def _crowds(capacity: int, changes: list[Change]) -> Iterator[tuple[int, int | N
     "they are the same or lie in one group of capacity 1.",
     DESIGN,
 )
-def exchanges_are_avoided(instance: Instance, plans: Sequence[Plan]) -> Iterator[Breach]:
+def exchanges_are_avoided(instance: Instance, plans: Iterable[Plan]) -> Iterator[Breach]:
     graph, index = instance.graph, instance.graph.index
     movers: dict[TimedMove, list[RobotId]] = defaultdict(list)
     for plan in plans:
@@ -155,7 +155,7 @@ def opposite_moves(graph: ResourceGraph, moves: Collection[TimedMove]) -> Callab
     return opposite
 
 
-JOINT_RULES: tuple[Rule[[Instance, Sequence[Plan]], Iterator[Violation]], ...] = (
+JOINT_RULES: tuple[Rule[[Instance, Iterable[Plan]], Iterator[Violation]], ...] = (
     capacity_is_kept,
     groups_are_kept,
     exchanges_are_avoided,

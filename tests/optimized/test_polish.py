@@ -1,7 +1,9 @@
 """The optimised polish makes the reference's plans, visit for visit, and never worse ones."""
 
 from dataclasses import replace
+from itertools import chain, repeat
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -30,6 +32,7 @@ from carp_spec import (
     check_update,
     judge,
     plan_cost,
+    violations_of,
 )
 from carproof import polish
 from carproof.generate import Fleet, Grid, Range, Traits, grid_instance
@@ -131,6 +134,19 @@ def test_both_engines_polish_crowded_grids_alike(instance: Instance, rounds: int
     polished = both(instance, given, rounds, 7)
     assert judge(instance, polished).valid
     assert worth(instance, polished) <= worth(instance, given)
+
+
+def test_a_polish_that_had_no_time_for_all_robots_is_lawful_and_never_worse() -> None:
+    instance = grid_instance(Grid(12, 12), Fleet(robots=80, seed=2))
+    fleet = carp_optimized.fleet.PlannedFleet(instance)
+    carp(fleet, range(80))
+    before = fleet.worth
+    looks = chain([True], repeat(False))
+    polishing = to_polish(fleet, 1, goes_on=looks.__next__)
+    assert np.count_nonzero(polishing.fields.alone == NONE) == 80 - 32
+    play(fleet, polishing, 200)
+    assert violations_of(instance, fleet.plans) == ()
+    assert fleet.worth < before
 
 
 def test_plans_that_are_not_kept_take_no_room() -> None:

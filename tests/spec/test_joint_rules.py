@@ -127,6 +127,17 @@ def test_moves_between_close_resources_are_an_exchange() -> None:
     assert told(instance, into, plan_of("r1", ("d", 0, 3), ("b", 3, 4))) == []
 
 
+def test_a_move_that_comes_close_but_from_elsewhere_is_no_exchange() -> None:
+    """Two robots leave the groups that the first one enters: one robot enters its own group, so that is looked at."""
+    moves = (("r", "s"), ("t", "q"), ("m", "u"), ("n", "v"))
+    groups = (Group("R", ("r", "q"), 1), Group("M", ("s", "m"), 1), Group("N", ("s", "n"), 1))
+    resources = tuple(Resource(each) for move in moves for each in move)
+    robots = tuple(Robot(name, *move) for name, move in zip(NAMES, moves, strict=True))
+    instance = Instance(ResourceGraph(resources, moves, groups=groups), robots)
+    plans = [plan_of(name, (start, 0, 1), (goal, 1, 2)) for name, (start, goal) in zip(NAMES, moves, strict=True)]
+    assert violations_of(instance, plans) == ()
+
+
 def test_an_exchange_is_told_as_that_of_two_resources_where_it_is_one() -> None:
     instance = grouped(Group("left", ("a", "b")))
     for there, back, said in (

@@ -98,7 +98,7 @@ def anneal(
     whole = sound_solution(instance, solution)
     fleet = PlannedFleet(instance)
     fleet.commit_solution(whole)
-    polishing = to_polish(fleet, seed, now)
+    polishing = to_polish(fleet, seed, now, lambda: clock() - started < seconds)
     least = int(polishing.fields.least.sum())
     played = play(fleet, polishing, 0)
     given = plans = fleet.plans

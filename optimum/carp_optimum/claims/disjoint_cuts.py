@@ -6,9 +6,9 @@ groups' lower bounds is the bound. Searches for prices know goals alone, so this
 independence detection of Standley 2010.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, islice
 
 from carp_optimum.sat.core_guided import core_guided
 from carp_optimum.sat.proving import short_refutation
@@ -16,6 +16,7 @@ from carp_optimum.sat.solver import LOOKS, TimeOver, clock_of
 from carp_spec import Instance, Plan, RobotId, total_cost, violations_of
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, CutDocument
 from carp_spec.documents.instances import digest
+from carp_spec.joint_rules import JOINT_RULES
 from carp_verify.bound.cuts import group_of
 from carp_verify.optimum.encoding import beat_formula
 
@@ -35,29 +36,37 @@ class Group:
 
 
 def bound_by_cuts(
-    instance: Instance, check: Callable[[int], None], on_step: Callable[[int, int], None]
+    instance: Instance, within: Callable[[], None], check: Callable[[int], None], on_step: Callable[[int, int], None]
 ) -> BoundDocument:
     """Search until nothing is gained any more, or until `check`, which gets the steps, raises `TimeOver`.
 
+    So may `within`, which is called as the plans of single robots are found.
     A step is a group that is searched; `on_step` gets the steps and the bound so far, first the shortest paths alone.
+    Robots that there is no time for claim a cost of 0.
     """
     from carp_optimized.fleet import PlannedFleet  # noqa: PLC0415 - slow to load
 
     fleet = PlannedFleet(instance)
-    shortest: dict[RobotId, int | None] = {}
-    groups = []
-    for position, robot in enumerate(instance.robots):
-        plan = fleet.find(position, None, 0)
-        shortest[robot.id] = None if plan is None else total_cost(instance, [plan])
-        if plan is not None:
-            groups.append(Group((robot.id,), (plan,)))
-    on_step(0, _total(shortest, groups))
+    shortest: dict[RobotId, int | None] = dict.fromkeys(instance.robot, 0)
+    groups: list[Group] = []
     steps = 0
 
     def look() -> None:
         check(steps)
 
     try:
+        for position, robot in enumerate(instance.robots):
+            if position > 0:
+                within()
+            shortest[robot.id] = fleet.ticks_to_goal(position)
+        on_step(0, _total(shortest, groups))
+        for position, robot in enumerate(instance.robots):
+            if position > 0:
+                within()
+            plan = fleet.find(position, None, 0)
+            shortest[robot.id] = None if plan is None else total_cost(instance, [plan])
+            if plan is not None:
+                groups.append(Group((robot.id,), (plan,)))
         while pairs := _meetings(instance, groups, look):
             for pair in pairs:
                 merged = _searched(instance, (*pair[0].robots, *pair[1].robots), look)
@@ -65,7 +74,7 @@ def bound_by_cuts(
                 steps += 1
                 on_step(steps, _total(shortest, groups))
     except TimeOver:
-        pass
+        on_step(steps, _total(shortest, groups))
     cuts = tuple(group.cut for group in groups if group.cut is not None)
     cut = {robot for each in cuts for robot in each.robots}
     return BoundDocument(
@@ -89,12 +98,20 @@ def _total(shortest: dict[RobotId, int | None], groups: Sequence[Group]) -> int:
 def _meetings(instance: Instance, groups: Sequence[Group], look: Callable[[], None]) -> list[tuple[Group, Group]]:
     """Pairs of groups whose plans conflict and that are not too large together, small ones first; no group is in two.
 
-    One judgement of all plans finds the pairs that may conflict: 1,000 robots have half a million pairs.
+    One judgement of all plans, each of which is lawful, finds the pairs that may conflict: 1,000 robots have half a
+    million pairs.
     """
+
+    def watched() -> Iterator[Plan]:
+        for plan in plans:
+            look()
+            yield plan
+
     number = {robot: position for position, group in enumerate(groups) for robot in group.robots}
     near: set[tuple[int, int]] = set()
     plans = [plan for each in groups if len(each.robots) < LARGEST_GROUP for plan in each.plans]
-    for violation in violations_of(instance, plans, MOST_MEETINGS):
+    found = (violation for rule in JOINT_RULES for violation in rule(instance, watched()))
+    for violation in islice(found, MOST_MEETINGS):
         near.update(combinations(sorted({number[robot] for robot in violation.robots}), 2))
         look()
     sizes = [len(each.robots) for each in groups]

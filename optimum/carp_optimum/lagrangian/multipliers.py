@@ -25,14 +25,14 @@ def refuse_table(path: str, what: str, entries: int, most: int) -> None:
 
 
 def requests_of(instance: Instance) -> Requests:
-    """The robots' requests; how far they are from their goals is to be found."""
+    """The robots' requests; how far they are from their goals is to be found, until when that is 0."""
     index, robots = instance.graph.index, instance.robots
     return Requests(
         start=np.array([index[robot.start] for robot in robots], np.int32),
         goal=np.array([index[robot.goal] for robot in robots], np.int32),
         release=np.array([robot.release for robot in robots], np.int32),
         pace=np.array([robot.pace for robot in robots], np.int32),
-        earliest=np.zeros(len(robots), np.int64),
+        earliest=np.array([robot.release for robot in robots], np.int64),
         rest=np.full((len(robots), len(index)), NONE, np.int32),
     )
 

@@ -1,6 +1,7 @@
 """The search for good prices: the work between the compiled steps of `carp_optimum.lagrangian.price_steps`."""
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from fractions import Fraction
 from operator import itemgetter
 from time import monotonic_ns
@@ -26,6 +27,7 @@ from carp_optimum.lagrangian.price_steps import KEPT, LARGEST_GAIN, PARTS, UNIT,
 from carp_optimum.lagrangian.priced_paths import find_rests, find_ways, see_ways
 from carp_optimum.lagrangian.state import Cells, add_up
 from carp_optimum.lagrangian.usage import count_ways
+from carp_optimum.sat.solver import TimeOver
 from carp_spec import Instance, Refusal, ResourceId, RobotId
 from carp_spec.documents.bounds import DeadlinesDocument
 from carp_verify.bound.rules import LARGEST_RESTS, LARGEST_SEARCH, LARGEST_TABLE, LONGEST_STAY, stay_is_searched
@@ -77,11 +79,21 @@ class PriceSearch:
     each step of `climb` and `roam`, and may raise `TimeOver`.
     """
 
-    def __init__(self, instance: Instance, scale: int, clock: Callable[[], int] = monotonic_ns) -> None:
-        """`clock` gives nanoseconds, of which `longest` is what all ways together have taken at most."""
+    def __init__(
+        self,
+        instance: Instance,
+        scale: int,
+        clock: Callable[[], int] = monotonic_ns,
+        within: Callable[[], None] = lambda: None,
+    ) -> None:
+        """`clock` gives nanoseconds, of which `longest` is what all ways together have taken at most.
+
+        Where `within` raises `TimeOver` here already, the search has not `begun`, and knows `shortest_costs` alone.
+        """
         self._clock = clock
-        self.within: Callable[[], None] = lambda: None
+        self.within = within
         self.longest = 0
+        self.horizon = 0
         refuse_what_is_too_large(instance)
         robots, resources = len(instance.robots), len(instance.graph.resources)
         refuse_table("$.robots", "robots times resources", robots * resources, LARGEST_RESTS)
@@ -95,24 +107,43 @@ class PriceSearch:
         if not stay_is_searched(longest):
             message = f"the pace times the duration must be at most {LONGEST_STAY}, the limit, and is {longest}"
             raise Refusal("limit", "$.graph", stay_is_searched.id, message)
-        find_rests(Native(dual_of(instance, graph, requests, longest, 0, 1)))
-        last = max(requests.earliest.tolist(), default=0)
-        refuse_tick("$.graph", last)
-        most = min(LARGEST_ARRAY // max(graph.room.size, 1), LARGEST_TABLE // max(robots, 1))
-        self.horizon = min(max(last, 0) + longest + TICKS_BEYOND, most, LAST_TICK)
-        wanted = min(max(DELAYS * longest, self.horizon + longest), LARGEST_TABLE // max(robots, 1))
-        delays = max(1, min(wanted, MOST_NODES // max(resources, 1), LARGEST - last))
-        self.dual = dual_of(instance, graph, requests, longest, self.horizon, delays)
+        self.dual = dual_of(instance, graph, requests, longest, 0, 1)
         self.native = Native(self.dual)
         self.deadlines: list[Deadlines] = []
         self.fees = np.zeros(0, np.int64)
         self._course_of_fees = np.zeros(0, np.int64)
         self._flat, _ = flattened([], 0)
         self._is_charged = False
-        self.best = self._bound()
-        self.shortest = self.best
-        self._kept = self._point()
         self.count = 0
+        self.best = self.shortest = 0
+        self._kept = self._point()
+        self.begun = False
+        with suppress(TimeOver):
+            self._begin(longest)
+            self.begun = True
+        if not self.begun:
+            self.best = self.shortest = sum(least or 0 for _, least in self.shortest_costs())
+
+    def _begin(self, longest: int) -> None:
+        """Find how far all are from their goals, and the tables and the first bound that follow; may raise `TimeOver`.
+
+        `longest` is the longest stay of a move.
+        """
+        graph, requests, robots = self.dual.graph, self.dual.requests, len(self.instance.robots)
+        for first in range(0, robots, PART):
+            if first > 0:
+                self.within()
+            find_rests(self.native, first, min(first + PART, robots))
+        last = max(requests.earliest.tolist(), default=0)
+        refuse_tick("$.graph", last)
+        most = min(LARGEST_ARRAY // max(graph.room.size, 1), LARGEST_TABLE // max(robots, 1))
+        self.horizon = min(max(last, 0) + longest + TICKS_BEYOND, most, LAST_TICK)
+        wanted = min(max(DELAYS * longest, self.horizon + longest), LARGEST_TABLE // max(robots, 1))
+        delays = max(1, min(wanted, MOST_NODES // max(graph.duration.size, 1), LARGEST - last))
+        self.dual = dual_of(self.instance, graph, requests, longest, self.horizon, delays)
+        self.native = Native(self.dual)
+        self.best = self.shortest = self._bound(self.within)
+        self._kept = self._point()
 
     def _point(self) -> Point:
         return Point(self._priced(self.dual.limits), self._priced(self.dual.exchanges), self.fees.copy())
@@ -387,6 +418,6 @@ class PriceSearch:
         return tuple(costs.items())
 
     def shortest_costs(self) -> tuple[tuple[RobotId, int | None], ...]:
-        """The cost of each robot's shortest way, in parts of a tick."""
+        """The cost of each robot's shortest way, in parts of a tick; 0 where there was no time to find it."""
         robots = zip(self.instance.robots, self.dual.requests.earliest.tolist(), strict=True)
         return tuple((each.id, None if at == NONE else self.scale * (at - each.release)) for each, at in robots)

@@ -29,11 +29,11 @@ ENDLESS = 1 << 62
 
 
 @entry
-def find_rests(native: Native[Dual]) -> None:
-    """Fill `rest` and `earliest` of all robots, by Dijkstra from the goals backwards."""
+def find_rests(native: Native[Dual], first: int, last: int) -> None:
+    """Fill `rest` and `earliest` of the robots from the first up to the last, by Dijkstra from the goals backwards."""
     dual = dual_at(native)
     requests = dual.requests
-    for robot in range(requests.start.size):
+    for robot in range(first, last):
         settle_rests(dual, robot)
         start = int(requests.start[robot])
         requests.earliest[robot] = NONE

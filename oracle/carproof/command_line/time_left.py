@@ -15,15 +15,15 @@ HARDLY_ANY = 1e-3
 S = TypeVar("S", float, float | None)
 
 
-def time_left(context: click.Context, seconds: S, compiling: float = 0.0, judging: float = 0.0) -> S:
+def time_left(context: click.Context, seconds: S, compiling: float = 0.0, ending: float = 0.0) -> S:
     """What is left of the seconds of the command, not counting those of `compiling`; wrong ones stay, to be refused.
 
-    The answer is judged in `judging` seconds.
+    What follows the search takes `ending` seconds, and some to print.
     """
     if not (seconds and 0 < seconds <= float_info.max):
         return seconds
     started: float = context.find_root().obj
-    return max(seconds + compiling - (perf_counter() - started) - judging - ENDING, HARDLY_ANY)
+    return max(seconds + compiling - (perf_counter() - started) - ending - ENDING, HARDLY_ANY)
 
 
 def time_of_compiling() -> float:

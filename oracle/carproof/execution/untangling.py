@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from itertools import count, takewhile
 
 from carp_spec import Group, Instance, Plan, Resource, Robot, RobotId, Solution, Visit, plan_cost
-from carp_spec.execution.dependencies import dependencies, shortest_cycle
+from carp_spec.execution.dependencies import cycles, dependencies, shortest
 from carp_spec.windows import occupancy, stays_within
 from carproof.engines import Engine
 
@@ -39,8 +39,8 @@ def untangle(
     kept_out: dict[RobotId, list[Visit]] = {}
     extra = 0
     for done in range(MOST_ROUNDS):
-        edges = dependencies(instance, list(plans.values()))
-        cycle = shortest_cycle(tuple(takewhile(lambda _: goes_on(), edges)))
+        edges = takewhile(lambda _: goes_on(), dependencies(instance, list(plans.values())))
+        cycle = shortest(takewhile(lambda _: goes_on(), cycles(edges)))
         found: list[tuple[int, int, Plan, Visit]] = []
         for number, edge in enumerate(takewhile(lambda _: goes_on(), cycle)):
             robot, place = edge.after

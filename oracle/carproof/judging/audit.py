@@ -7,6 +7,7 @@ without a plan.
 """
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import msgspec
@@ -21,6 +22,10 @@ from carp_verify.query.verify import Traffic, require_certificate
 from carproof.engines import Engine
 
 CHECKER = "carp_verify"
+
+
+class TimeOverError(Exception):
+    """The time of an audit is over."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,11 +60,17 @@ class Audit:
 class Beside:
     """The best plans beside those committed so far: the planner is not trusted, and what it finds is checked."""
 
-    def __init__(self, instance: Instance, engine: Engine) -> None:
+    def __init__(self, instance: Instance, engine: Engine, goes_on: Callable[[], bool] = lambda: True) -> None:
         self._instance = instance
         self._certifier = engine.certifier(instance)
-        self._traffic = Traffic(instance)
+        self._goes_on = goes_on
+        self._traffic = Traffic(instance, self.look)
         self.committed: list[Plan] = []
+
+    def look(self) -> None:
+        """Look at the clock; raises `TimeOverError`, which ends what is at work, where it is not to go on."""
+        if not self._goes_on():
+            raise TimeOverError
 
     def commit(self, plan: Plan) -> None:
         """Commit a plan; the next ones are compared beside it."""
@@ -118,17 +129,18 @@ def audit_in_order(  # noqa: PLR0913 - how long, and what robots have followed u
 
     With `followed`, only the plans of its robots, each with the plan that the robot has followed until now.
     """
-    beside, audit = Beside(instance, engine), Audit()
-    for plan in in_order(solution):
-        if not goes_on():
-            audit.undecided.append(plan)
-            continue
-        if followed is None or plan.robot in followed:
-            earlier = _earlier_plan(beside, audit, plan, (followed or {}).get(plan.robot), now)
-            if earlier is not None:
-                audit.late.append(Late(plan, earlier, tuple(beside.committed)))
-        beside.commit(plan)
-        advance()
+    beside, audit = Beside(instance, engine, goes_on), Audit()
+    plans = [*in_order(solution)]
+    with suppress(TimeOverError):
+        for plan in plans:
+            beside.look()
+            if followed is None or plan.robot in followed:
+                earlier = _earlier_plan(beside, audit, plan, (followed or {}).get(plan.robot), now)
+                if earlier is not None:
+                    audit.late.append(Late(plan, earlier, tuple(beside.committed)))
+            beside.commit(plan)
+            advance()
+    audit.undecided = plans[len(beside.committed) :]
     return audit
 
 
@@ -146,16 +158,18 @@ def audit_in_some_order(
     would be late in it. A plan stays late as long as there is room for the earlier one that was found. If the time is
     over before, the rest is undecided.
     """
-    beside, audit = Beside(instance, engine), Audit()
+    beside, audit = Beside(instance, engine, goes_on), Audit()
     waiting: list[tuple[Plan, Plan | None]] = [(plan, None) for plan in in_order(solution)]
     is_moving = True
     while is_moving:
         is_moving, asked, waiting = False, waiting, []
         for number, (plan, known) in enumerate(asked):
-            if not goes_on():
+            try:
+                beside.look()
+                earlier = known if known is not None and beside.has_room(known) else _earlier_plan(beside, audit, plan)
+            except TimeOverError:
                 audit.undecided = [each for each, _ in (*waiting, *asked[number:])]
                 return audit
-            earlier = known if known is not None and beside.has_room(known) else _earlier_plan(beside, audit, plan)
             if earlier is None:
                 beside.commit(plan)
                 is_moving = True

@@ -6,7 +6,7 @@ entries. Source: Hönig et al. 2019.
 
 from bisect import bisect_right
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias, cast
 
@@ -56,34 +56,43 @@ def stays_by_constraint(graph: ResourceGraph, plans: Sequence[Plan]) -> dict[int
     """The stays of all plans in each resource and each group."""
     stays: dict[int, list[Stay]] = defaultdict(list)
     for plan in plans:
-        ways = [None, *(visit.resource for visit in plan.visits), None]
-        before: Sequence[int] = ()
-        for place, visit in enumerate(plan.visits):
-            node = (plan.robot, place)
-            constraints = graph.constraints_of(visit.resource)
-            for each in constraints:
-                stay = Stay(node, node, visit, ways[place], None)
-                if each in before:
-                    one = stays[each].pop()
-                    stay = replace(one, last=node, visit=structs.replace(one.visit, leave=visit.leave))
-                stays[each].append(replace(stay, target=ways[place + 2]))
-            before = constraints
+        _add_stays(stays, graph, plan)
     return stays
+
+
+def _add_stays(stays: dict[int, list[Stay]], graph: ResourceGraph, plan: Plan) -> None:
+    """Add the stays of one more plan."""
+    ways = [None, *(visit.resource for visit in plan.visits), None]
+    before: Sequence[int] = ()
+    for place, visit in enumerate(plan.visits):
+        node, target = (plan.robot, place), ways[place + 2]
+        constraints = graph.constraints_of(visit.resource)
+        for each in constraints:
+            stay = Stay(node, node, visit, ways[place], target)
+            if each in before:
+                one = stays[each].pop()
+                whole = structs.replace(one.visit, leave=visit.leave)
+                stay = replace(one, last=node, visit=whole, target=target)
+            stays[each].append(stay)
+        before = constraints
 
 
 def dependencies(instance: Instance, plans: Sequence[Plan]) -> Iterator[Dependency]:
     """The edges of the dependency graph of lawful plans, without those that follow from others."""
     graph, index = instance.graph, instance.graph.index
-    least = {plan.robot: least_stays(instance, plan) for plan in plans}
+    least: dict[RobotId, Sequence[int]] = {}
+    stays: dict[int, list[Stay]] = defaultdict(list)
     for plan in plans:
+        least[plan.robot] = least_stays(instance, plan)
+        _add_stays(stays, graph, plan)
         for place, visit in enumerate(plan.visits[:-1]):
             ticks = least[plan.robot][place]
             following = (plan.robot, place + 1)
             yield Dependency(
                 "travel", (plan.robot, place), following, ticks, visit.resource, index[visit.resource], True
             )
-    for constraint, stays in stays_by_constraint(graph, plans).items():
-        for one, other in _direct(instance, stays):
+    for constraint, there in stays.items():
+        for one, other in _direct(instance, there):
             robot, place = one.last
             yield waiting(instance, constraint, one, other, least[robot][place])
 
@@ -116,13 +125,24 @@ def _direct(instance: Instance, stays: Sequence[Stay]) -> Iterator[tuple[Stay, S
                 yield stays[place], other
 
 
-def shortest_cycle(edges: Sequence[Dependency]) -> tuple[Dependency, ...]:
+def shortest_cycle(edges: Iterable[Dependency]) -> tuple[Dependency, ...]:
     """The edges of the first shortest cycle, if there is one; the cycles of lawful plans have edges of no ticks."""
+    return shortest(cycles(edges))
+
+
+def shortest(found: Iterable[tuple[Dependency, ...]]) -> tuple[Dependency, ...]:
+    """The first shortest of some cycles; those without edges do not count."""
+    return min(filter(None, found), key=len, default=())
+
+
+def cycles(edges: Iterable[Dependency]) -> Iterator[tuple[Dependency, ...]]:
+    """For each visit that an edge of no ticks leads from, the shortest cycle through it; without edges if none is."""
     following: dict[Node, list[Dependency]] = defaultdict(list)
     for edge in edges:
         if edge.ticks == 0:
             following[edge.before].append(edge)
-    return min(filter(None, (_way_back(following, start) for start in following)), key=len, default=())
+    for start in following:
+        yield _way_back(following, start)
 
 
 def _way_back(following: dict[Node, list[Dependency]], start: Node) -> tuple[Dependency, ...]:

@@ -1,6 +1,7 @@
 """`bound` and `verify-bound`."""
 
 from collections.abc import Callable
+from itertools import count
 from pathlib import Path
 from time import process_time
 
@@ -8,9 +9,10 @@ import pytest
 from msgspec import to_builtins
 from tests.oracle.running import HEAD_ON, Run, corridor, save
 
-from carp_optimum.bound import Progress
+from carp_optimum.bound import Progress, lower_bound
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument
 from carp_spec.documents.instances import write_instance
+from carp_verify.bound.verify import verify_bound
 from carproof.generate import Fleet, Grid, Range, grid_instance
 
 EMPTY = BoundDocument(BOUND_FORMAT, "", 0, 1, 0, (), (), (), ())
@@ -41,6 +43,15 @@ def test_stops_of_a_robot_alone_and_of_very_many_are_bounded_in_the_time(carproo
         assert process_time() - started < 5
         assert outcome.code == 0
         assert outcome.stdout.splitlines()[-1].split()[0] == str(robots)
+
+
+@pytest.mark.parametrize("fleet", [Fleet(80), Fleet(80, orders="pick-and-drop")])
+def test_robots_that_there_is_no_time_for_count_as_0(fleet: Fleet) -> None:
+    instance = grid_instance(Grid(12, 12), fleet)
+    clock = (10**9 * each for each in count())
+    found = lower_bound(instance, 0.5, clock=clock.__next__)
+    assert verify_bound(instance, found) == found.bound
+    assert 0 < found.bound < lower_bound(instance, steps=0).bound
 
 
 @pytest.mark.parametrize(

@@ -48,6 +48,12 @@ def test_for_a_time_the_command_python_and_the_op_improve_plans(carproof: Run) -
     assert total_cost(INSTANCE, found.plans) == BEST
 
 
+def test_plans_stay_as_they_are_where_there_is_no_time(carproof: Run) -> None:
+    outcome = carproof("polish town.json late.json --seconds 1e-9 -o same.json")
+    assert outcome.stdout.splitlines()[-1].split()[:5] == ["polished", "0", "7", "-", "-"]
+    assert read_solution(Path("same.json").read_bytes()) == GIVEN
+
+
 def test_an_engine_keeps_to_rounds_that_never_raise_the_total(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("carp_optimized.improve.annealing.polish_or_anneal", None)
     assert carproof("polish town.json late.json --seconds 0.1 --engine optimized").code == 0

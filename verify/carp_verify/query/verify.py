@@ -18,7 +18,7 @@ The same conditions are proved sufficient in `kernel/QueryCertificate.v`.
 
 from bisect import bisect_left, bisect_right
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from itertools import accumulate, pairwise, zip_longest
@@ -42,10 +42,14 @@ from carp_verify.query.rules import (
 
 
 class Traffic:
-    """The committed plans by constraint and tick: it takes plans one by one, and gives the free windows."""
+    """The committed plans by constraint and tick: it takes plans one by one, and gives the free windows.
 
-    def __init__(self, instance: Instance) -> None:
+    `watch` is called for each look at windows, and may raise an error of its own to end a check.
+    """
+
+    def __init__(self, instance: Instance, watch: Callable[[], None] = lambda: None) -> None:
         self.instance = instance
+        self._watch = watch
         self._capacities = [constraint.capacity for constraint in instance.graph.constraints]
         self._changes: dict[int, dict[int, int]] = defaultdict(lambda: {0: 0})
         self._counts: dict[int, tuple[list[int], list[int]]] = {}
@@ -85,6 +89,7 @@ class Traffic:
 
     def windows(self, resource: ResourceId, tick: int) -> Iterator[Window]:
         """The free windows of the resource that end after the tick, in order of time."""
+        self._watch()
         own, *groups = (self._room(each, tick) for each in self.instance.graph.constraints_of(resource))
         return reduce(_both, groups, own)
 

@@ -39,9 +39,11 @@ def command(
     Exit codes: 0 no rotation is left, 1 no robot of a rotation finds another plan, and nothing is written, 2 bad input,
     3 the time was over, and rotations may be left.
     """
+    reading = perf_counter()
     problem, sound = read_sound(instance, solution)
+    reading = perf_counter() - reading
     chosen = engine_named(engine)
-    until = deadline(time_left(context, seconds))
+    until = deadline(time_left(context, seconds, ending=reading))  # a query takes no longer, nor does writing
     with naming_documents(instance, solution):
         found = untangle(problem, sound, chosen, lambda: perf_counter() < until)
     if found.rotation and not found.undecided:

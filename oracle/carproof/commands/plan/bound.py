@@ -58,7 +58,8 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
 
     Robots pay prices for places that they contend for. The bound is the cheapest priced paths minus the most that
     the prices can collect. --output writes the prices as a certificate, which the command verify checks. With --plans
-    the table shows the gap between their total and the bound.
+    the table shows the gap between their total and the bound. Robots whose shortest paths there is no time for count as
+    0.
 
     Exit codes: 0 a bound is found, 1 a robot has no way to its goal (the bound is that of the others), 2 bad input.
     """
