@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from time import monotonic_ns
 from typing import TYPE_CHECKING, NamedTuple
 
-from carp_optimum.sat.solver import Deadline, TimeOver
+from carp_optimum.deadline import Deadline, TimeOver
 from carp_spec import Instance
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, DeadlinesDocument
 from carp_spec.documents.instances import digest

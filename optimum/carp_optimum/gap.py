@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
+from carp_optimum.deadline import Deadline, TimeOver
 from carp_optimum.optimum import optimum
 from carp_optimum.sat.core_guided import Optimum
-from carp_optimum.sat.solver import Deadline, TimeOver
 from carp_reference import plan, query
 from carp_spec import (
     Carp,

@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from carp_optimized import add as add
     from carp_optimized import assign as assign
     from carp_optimized import query as query
+    from carp_optimum.deadline import TimeOver as TimeOver
     from carp_optimum.gap import Gap as Gap
     from carp_optimum.gap import PlannerGap as PlannerGap
     from carp_optimum.sat.core_guided import Optimum as Optimum
-    from carp_optimum.sat.solver import TimeOver as TimeOver
     from carp_spec import AfterGoal as AfterGoal
     from carp_spec import Carp as Carp
     from carp_spec import Fault as Fault

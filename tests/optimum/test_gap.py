@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from tests.profiles import draws
 
+from carp_optimum.deadline import TimeOver
 from carp_optimum.gap import best_order, gap
 from carp_optimum.optimum import optimum
-from carp_optimum.sat.solver import TimeOver
 from carp_reference import query
 from carp_spec import Carp, Instance, Neighbourhood, Plan, Refusal, Resource, ResourceGraph, Robot, total_cost
 from carp_verify.bound.rules import ContradictionError

@@ -9,8 +9,8 @@ from tests.profiles import draws
 from tests.spec.making import grid, line
 from tests.verify.optimum.test_optimum import turned_ring
 
+from carp_optimum.deadline import Deadline, TimeOver, clock_of
 from carp_optimum.sat.heuristics import ever_better, plans_of_all
-from carp_optimum.sat.solver import Deadline, TimeOver, clock_of
 from carp_reference import plan
 from carp_spec import Carp, Instance, Robot, Solution, judge
 from carproof.generate import Fleet, Grid, grid_instance

@@ -6,7 +6,8 @@ from functools import partial
 
 import pytest
 
-from carp_optimum.sat.solver import CONFLICTS_BETWEEN_LOOKS, Solver, TimeOver
+from carp_optimum.deadline import TimeOver
+from carp_optimum.sat.solver import CONFLICTS_BETWEEN_LOOKS, Solver
 from carp_spec.permutations import splitmix64
 from carp_verify.optimum.clauses import Formula
 

@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, islice
 
+from carp_optimum.deadline import LOOKS, TimeOver, clock_of
 from carp_optimum.sat.core_guided import core_guided
 from carp_optimum.sat.proving import short_refutation
-from carp_optimum.sat.solver import LOOKS, TimeOver, clock_of
 from carp_spec import Instance, Plan, RobotId, total_cost, violations_of
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, CutDocument
 from carp_spec.documents.instances import digest

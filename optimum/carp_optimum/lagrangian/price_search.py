@@ -14,6 +14,7 @@ from carp_optimized.jit.references import Native
 from carp_optimized.state.arrays import LARGEST, NONE
 from carp_optimized.state.encoding import encode_graph
 from carp_optimized.state.limits import refuse_tick, refuse_what_is_too_large
+from carp_optimum.deadline import TimeOver
 from carp_optimum.lagrangian.deadlines import Deadlines, flattened
 from carp_optimum.lagrangian.multipliers import (
     LARGEST_ARRAY,
@@ -27,7 +28,6 @@ from carp_optimum.lagrangian.price_steps import KEPT, LARGEST_GAIN, PARTS, UNIT,
 from carp_optimum.lagrangian.priced_paths import find_rests, find_ways, see_ways
 from carp_optimum.lagrangian.state import Cells, add_up
 from carp_optimum.lagrangian.usage import count_ways
-from carp_optimum.sat.solver import TimeOver
 from carp_spec import Instance, Refusal, ResourceId, RobotId
 from carp_spec.documents.bounds import DeadlinesDocument
 from carp_verify.bound.rules import LARGEST_RESTS, LARGEST_SEARCH, LARGEST_TABLE, LONGEST_STAY, stay_is_searched

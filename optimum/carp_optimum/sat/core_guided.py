@@ -27,9 +27,10 @@ from dataclasses import dataclass
 from time import monotonic_ns
 from typing import TYPE_CHECKING
 
+from carp_optimum.deadline import Deadline, TimeOver
 from carp_optimum.sat.between import Between
 from carp_optimum.sat.heuristics import plans_of_all, sum_of_shortest_paths
-from carp_optimum.sat.solver import Deadline, Solver, TimeOver
+from carp_optimum.sat.solver import Solver
 from carp_spec import Instance, Plan, Refusal, Solution, judge, total_cost
 from carp_spec.inputs.options import require_limits
 from carp_spec.inputs.values import require_instance

@@ -5,7 +5,7 @@ from contextlib import suppress
 from functools import partial
 
 from carp_optimized.orderings import carp
-from carp_optimum.sat.solver import Deadline, TimeOver
+from carp_optimum.deadline import Deadline, TimeOver
 from carp_spec import Instance, Plan, Refusal, RobotId, Solution, judge, total_cost
 
 BETWEEN_LOOKS = 16  # robots whose shortest paths are found between two looks at the clock

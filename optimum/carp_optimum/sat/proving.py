@@ -7,9 +7,10 @@ from pathlib import Path
 
 import msgspec
 
+from carp_optimum.deadline import LOOKS, Deadline, TimeOver, clock_of
 from carp_optimum.sat.core_guided import Optimum
 from carp_optimum.sat.lrat_hints import NoHintsError, refutation_with_hints
-from carp_optimum.sat.solver import LOOKS, Deadline, Solver, TimeOver, clock_of
+from carp_optimum.sat.solver import Solver
 from carp_spec import Instance, Refusal
 from carp_spec.documents.instances import write_instance
 from carp_spec.inputs.options import require_limits

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from tests.verify.bound.plain_search import plain_least_cost
 
 from carp_optimum.bound import lower_bound
+from carp_optimum.deadline import Deadline
 from carp_optimum.sat.proving import refutation
-from carp_optimum.sat.solver import Deadline
 from carp_spec import Instance, Plan, Resource, ResourceGraph, ResourceId, Robot, RobotId, Visit
 from carp_spec.documents.bounds import BOUND_FORMAT, BoundDocument, CutDocument, DeadlinesDocument
 from carp_spec.documents.instances import digest

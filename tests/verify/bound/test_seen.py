@@ -12,8 +12,8 @@ from tests.verify.optimum.models import has_model
 from tests.verify.optimum.tiny import case
 
 from carp_optimum.bound import lower_bound
+from carp_optimum.deadline import Deadline
 from carp_optimum.sat.proving import refutation
-from carp_optimum.sat.solver import Deadline
 from carp_spec import Instance, Robot, RobotId
 from carp_spec.documents.bounds import BoundDocument, DeadlinesDocument, Sight
 from carp_spec.permutations import shuffle

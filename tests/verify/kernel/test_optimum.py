@@ -16,9 +16,9 @@ from tests.verify.optimum.test_proof import change_manifest, crossing, drop_last
 from tests.verify.optimum.test_unsolvable import BORN_TOGETHER
 from tests.verify.optimum.tiny import case
 
+from carp_optimum.deadline import Deadline
 from carp_optimum.optimum import optimum
 from carp_optimum.sat.proving import refutation, write_proof
-from carp_optimum.sat.solver import Deadline
 from carp_spec import AfterGoal, Instance, Resource, ResourceGraph, Robot
 from carp_spec.documents.bounds import BoundDocument, DeadlinesDocument
 from carp_spec.documents.instances import read_instance, write_instance

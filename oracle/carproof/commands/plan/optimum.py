@@ -101,8 +101,8 @@ def _writable(folder: Path) -> Path:
 
 def _prove(folder: Path, instance: Instance, best: "Optimum", limit: int) -> bool:
     """Write a proof and check it; whether the limits sufficed."""
+    from carp_optimum.deadline import TimeOver  # noqa: PLC0415
     from carp_optimum.sat.proving import write_proof  # noqa: PLC0415 - only for those who ask for a proof
-    from carp_optimum.sat.solver import TimeOver  # noqa: PLC0415
 
     try:
         write_proof(instance, best, folder, limit)
