@@ -22,7 +22,10 @@ from carp_verify.optimum.encoding import beat_formula
 
 LARGEST_GROUP = 8
 MOST_MEETINGS = 10_000
-"""Violations of a rule from which pairs of groups are taken. The search ends if none of them is of such a pair."""
+"""Violations from which pairs of groups are taken, those of a capacity first.
+
+The search ends if none of them is of such a pair.
+"""
 LONGEST_REFUTATION = 1_000_000  # characters
 
 

@@ -25,7 +25,7 @@ def refuse_table(path: str, what: str, entries: int, most: int) -> None:
 
 
 def requests_of(instance: Instance) -> Requests:
-    """The robots' requests; how far they are from their goals is to be found, until when that is 0."""
+    """The robots' requests; until the ways to their goals are found, they arrive at their release."""
     index, robots = instance.graph.index, instance.robots
     return Requests(
         start=np.array([index[robot.start] for robot in robots], np.int32),

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 import msgspec
 
+from carp_optimum.deadline import TimeOver
 from carp_spec import Instance, Plan, Refusal, RobotId, Solution
 from carp_spec.documents.query_certificates import QueryCertificateDocument
 from carp_spec.documents.solutions import solution_document
@@ -22,10 +23,6 @@ from carp_verify.query.verify import Traffic, require_certificate
 from carproof.engines import Engine
 
 CHECKER = "carp_verify"
-
-
-class TimeOverError(Exception):
-    """The time of an audit is over."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,9 +65,9 @@ class Beside:
         self.committed: list[Plan] = []
 
     def look(self) -> None:
-        """Look at the clock; raises `TimeOverError`, which ends what is at work, where it is not to go on."""
+        """Look at the clock; raises `TimeOver`, which ends what is at work, where it is not to go on."""
         if not self._goes_on():
-            raise TimeOverError
+            raise TimeOver
 
     def commit(self, plan: Plan) -> None:
         """Commit a plan; the next ones are compared beside it."""
@@ -131,7 +128,7 @@ def audit_in_order(  # noqa: PLR0913 - how long, and what robots have followed u
     """
     beside, audit = Beside(instance, engine, goes_on), Audit()
     plans = [*in_order(solution)]
-    with suppress(TimeOverError):
+    with suppress(TimeOver):
         for plan in plans:
             beside.look()
             if followed is None or plan.robot in followed:
@@ -167,7 +164,7 @@ def audit_in_some_order(
             try:
                 beside.look()
                 earlier = known if known is not None and beside.has_room(known) else _earlier_plan(beside, audit, plan)
-            except TimeOverError:
+            except TimeOver:
                 audit.undecided = [each for each, _ in (*waiting, *asked[number:])]
                 return audit
             if earlier is None:

@@ -143,7 +143,7 @@ def _too_early(
     ADG,
 )
 def is_acyclic(instance: Instance, solution: Solution) -> Iterator[Breach]:
-    cycle = shortest_cycle(tuple(dependencies(instance, solution.plans)))
+    cycle = shortest_cycle(dependencies(instance, solution.plans))
     if cycle:
         robot, place = cycle[0].after
         tick = next(plan.visits[place].enter for plan in solution.plans if plan.robot == robot)

@@ -54,6 +54,15 @@ def test_robots_that_there_is_no_time_for_count_as_0(fleet: Fleet) -> None:
     assert 0 < found.bound < lower_bound(instance, steps=0).bound
 
 
+def test_how_many_robots_there_was_no_time_for_is_told(carproof: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("carproof.commands.plan.bound.time_left", lambda *_: 1e-9)
+    Path("many.json").write_bytes(write_instance(grid_instance(Grid(12, 12), Fleet(80))))
+    outcome = carproof("bound many.json --seconds 1")
+    *_, numbers, told = outcome.stdout.splitlines()
+    assert (numbers.split()[:2], outcome.code) == (["80", "-"], 0)
+    assert told == "there was no time for the shortest paths of 48 robots, which count as 0"
+
+
 @pytest.mark.parametrize(
     "command", ["bound town.json --steps 1 --plans plans.json", "polish town.json plans.json --bound bound.json"]
 )

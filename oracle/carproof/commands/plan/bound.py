@@ -5,13 +5,14 @@ from time import perf_counter
 import click
 
 from carp_spec import Instance, judge, total_cost
+from carp_spec.documents.bounds import BoundDocument
 from carp_spec.documents.decoding import write
 from carp_spec.inputs.options import BOUND_SECONDS, require_limits
 from carproof.command_line.answer import Answer
 from carproof.command_line.files import InputFile, Output, naming
 from carproof.command_line.foreign import MovingAI, Problem, benchmark_options, from_option, read_solution_of
 from carproof.command_line.options import listed, output_options
-from carproof.command_line.tables import print_line, print_table
+from carproof.command_line.tables import counted, print_line, print_table
 from carproof.command_line.time_left import time_left, time_of_compiling
 from carproof.extras import require
 from carproof.progress import found_so_far, gap, search_progress
@@ -88,12 +89,23 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     took = perf_counter() - started
     lost = [problem.robot[robot] for robot, least in certificate.robots if least is None]
     if output.write(write(certificate)):
-        numbers = [len(problem.robots), seen[0].bound, certificate.bound, "-" if known is None else known]
+        unseen = _unseen(problem, certificate)
+        shortest = "-" if unseen else seen[0].bound
+        numbers = [len(problem.robots), shortest, certificate.bound, "-" if known is None else known]
         row = [*numbers, "-" if known is None else gap(known, certificate.bound), seen[-1].steps, f"{took:.2f} s"]
         print_table(COLUMNS, [row], numbers=COLUMNS)
+        if unseen:
+            print_line(f"there was no time for the shortest paths of {counted(unseen, 'robot')}, which count as 0")
         for robot in lost:
             print_line(f"unplanned: no way leads from {robot.start} to {robot.goal}, the goal of robot {robot.id}")
     return Answer.of(not lost)
+
+
+def _unseen(instance: Instance, certificate: BoundDocument) -> int:
+    """How many robots count as 0 though they have to move, and are in no cut: there was no time for them."""
+    cut = {robot for each in certificate.cuts for robot in each.robots}
+    still = [instance.robot[robot] for robot, least in certificate.robots if least == 0 and robot not in cut]
+    return sum(any(stop.resource != each.start for stop in each.stops) for each in still)
 
 
 def total_of(instance: Instance, plans: str | None, format: str | None) -> int | None:

@@ -83,12 +83,12 @@ def command(  # noqa: PLR0913 - one parameter for each argument and option
     judging = perf_counter() - judging
     ending = AS_LONG * judging
     compiling = 0.0 if seconds is None else time_of_compiling()
-    started = perf_counter()
     left = time_left(context, seconds, compiling, ending)
-    until = inf if left is None else started + left / PARTS_FOR_BOUND
+    until = inf if left is None else perf_counter() + left / PARTS_FOR_BOUND
     least = bound_of(instance, bound, lambda: perf_counter() < until)
     played = 0
     after = before
+    started = perf_counter()
     with problem.naming(), search_progress("polishing", last_round(iterations, seconds), seconds) as show:
 
         def advance(rounds: int, unplanned: int, total: int) -> None:
