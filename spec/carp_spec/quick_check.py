@@ -26,7 +26,7 @@ LATEST = 1 << 30
 LARGEST = 2**63 - 1
 """Of a whole number in an array."""
 MOST_WAYS = 3_000_000
-"""More ways from areas into areas are left to the rules, which take no memory for each."""
+"""Ways from areas into areas that are looked at together; more at one tick are left to the rules."""
 
 
 def is_large(plans: Sequence[Plan]) -> bool:
@@ -152,22 +152,51 @@ def _moves_do_not_meet(graph: ResourceGraph, source: "Longs", target: "Longs", t
     made = source * size + target
     if not made.size:
         return True
-    if not moves.size or (moves.take(np.searchsorted(moves, made), mode="clip") != made).any():
+    if not moves.size or not _are_among(made, moves).all():
         return False
     size += len(graph.groups)
-    ticks = int(tick.max()) + 1
-    if size * size * max(ticks * 2, made.size) > LARGEST:
+    if size * size * max((int(tick.max()) + 1) * 2, made.size) > LARGEST:
         return False
-    if graph.groups:
-        areas = [graph.areas_of(each.id) for each in graph.resources]
-        sizes = np.array([*map(len, areas)], np.int64)
-        if (sizes[source] * sizes[target]).sum() > MOST_WAYS:
-            return False
-        move, source = _each_of(areas, source)
-        way, target = _each_of(areas, target[move])
-        source, tick, number = source[way], tick[move[way]], move[way] * size
-        is_back = np.isin((number + source) * size + target, (number + target) * size + source)
-        source, target, tick = source[~is_back], target[~is_back], tick[~is_back]
+    if not graph.groups:
+        return _ways_do_not_meet(size, source, target, tick)
+    areas = [graph.areas_of(each.id) for each in graph.resources]
+    sizes = np.array([*map(len, areas)], np.int64)
+    in_time = np.argsort(tick, kind="stable")
+    begins = np.flatnonzero(np.diff(tick[in_time], prepend=-1))
+    ways = np.add.reduceat((sizes[source] * sizes[target])[in_time], begins)
+    cuts = begins[1:][np.diff((np.cumsum(ways) - ways) // MOST_WAYS) > 0]
+    return bool(ways.max() <= MOST_WAYS) and all(
+        _ways_do_not_meet(size, *_ways_of(areas, size, source[part], target[part], tick[part]))
+        for part in np.split(in_time, cuts)
+    )
+
+
+def _ways_of(
+    areas: Sequence[Sequence[int]], size: int, source: "Longs", target: "Longs", tick: "Longs"
+) -> "tuple[Longs, Longs, Longs]":
+    """The ways of moves, but for those that a move makes there and back."""
+    import numpy as np  # noqa: PLC0415 - slow to load
+
+    resource, area = _each_of(areas, np.arange(len(areas)))
+    inside = np.sort(resource * size + area)
+    move, one = _each_of(areas, source)
+    way, other = _each_of(areas, target[move])
+    move, one = move[way], one[way]
+    is_back = _are_among(source[move] * size + other, inside) & _are_among(target[move] * size + one, inside)
+    return one[~is_back], other[~is_back], tick[move][~is_back]
+
+
+def _are_among(keys: "Longs", known: "Longs") -> "npt.NDArray[np.bool_]":
+    """Of each key, whether it is one of those known, which are in order and at least one."""
+    import numpy as np  # noqa: PLC0415 - slow to load
+
+    return np.equal(known.take(np.searchsorted(known, keys), mode="clip"), keys)
+
+
+def _ways_do_not_meet(size: int, source: "Longs", target: "Longs", tick: "Longs") -> bool:
+    """Whether no two ways at a tick lead from areas, of which there are so many, into each other."""
+    import numpy as np  # noqa: PLC0415 - slow to load
+
     pair = np.minimum(source, target) * size + np.maximum(source, target)
-    ways = np.sort((pair * ticks + tick) * 2 + (source > target))
+    ways = np.sort((pair * (int(tick.max(initial=0)) + 1) + tick) * 2 + (source > target))
     return not (np.diff(ways) == 1)[ways[:-1] % 2 == 0].any()

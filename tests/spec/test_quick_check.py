@@ -115,7 +115,9 @@ def test_what_is_wrong_at_ticks_that_arrays_do_not_hold_does_not_pass(
     assert not breaks_no_rule(instance, plans, now)
 
 
-def test_more_ways_between_areas_than_the_limit_are_left_to_the_rules(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_more_ways_between_areas_at_a_tick_than_the_limit_are_left_to_the_rules(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """One move from a resource in two groups of capacity 1 to one in none: three ways."""
     graph = ResourceGraph(
         (Resource("a"), Resource("b")), (("a", "b"),), groups=(Group("g", ("a",)), Group("h", ("a",)))
@@ -126,16 +128,26 @@ def test_more_ways_between_areas_than_the_limit_are_left_to_the_rules(monkeypatc
         assert breaks_no_rule(Instance(graph, (Robot("r", "a", "b"),)), plans) == passes
 
 
-def test_an_exchange_with_a_group_does_not_pass() -> None:
+def test_an_exchange_with_a_group_does_not_pass(monkeypatch: pytest.MonkeyPatch) -> None:
     graph = ResourceGraph(
         (Resource("a"), Resource("b"), Resource("c", 2), Resource("d", 2)),
         (("a", "c"), ("a", "d"), ("b", "c"), ("c", "d")),
         groups=(Group("g", ("a", "c")),),
     )
-    instance = instance_on(graph, Robot("r", "c", "d"), Robot("s", "d", "a"), after_goal="park")
-    plans = plan_of("r", ("c", 0, 1), ("d", 1, None)), plan_of("s", ("d", 0, 1), ("a", 1, None))
+    instance = instance_on(graph, Robot("r", "a", "d"), Robot("s", "d", "a"), after_goal="park")
+    plans = plan_of("r", ("a", 0, 1), ("c", 1, 2), ("d", 2, None)), plan_of("s", ("d", 0, 2), ("a", 2, None))
     assert [each.rule for each in violations_of(instance, plans)] == ["joint/exchange"]
-    assert not breaks_no_rule(instance, plans)
+    for most in (quick_check.MOST_WAYS, 4):  # 4 ways at each of two ticks
+        monkeypatch.setattr(quick_check, "MOST_WAYS", most)
+        assert not breaks_no_rule(instance, plans)
+
+
+@given(instances_with_plans(), st.integers(1, 9))
+def test_what_passes_part_by_part_passes_as_a_whole(case: tuple[Instance, tuple[Plan, ...]], most: int) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(quick_check, "MOST_WAYS", most)
+        passes = breaks_no_rule(*case)
+    assert breaks_no_rule(*case) or not passes
 
 
 @given(planned_instances(), st.integers(0, 20))
