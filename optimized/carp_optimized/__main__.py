@@ -8,6 +8,7 @@ from carp_optimized.crowds.distances import are_right, landmarks_of
 from carp_optimized.execution.following import retime
 from carp_optimized.fixed_paths import fixed_paths
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.improve.ejection import plan_left_out
 from carp_optimized.improve.planning import plan_crowd
 from carp_optimized.jit.compiling import note_that_it_is_compiled
 from carp_optimized.orderings import carp, greedy, shuffled
@@ -51,7 +52,11 @@ def compile_all() -> None:
     with_stops = Robot("u", "a", stops=(Stop("b", 1), Stop("c")))
     potentials(PlannedFleet(Instance(graph, (with_stops,))), 0)
     siding = ResourceGraph((*graph.resources, Resource("d")), (*graph.edges, ("b", "d")))  # no order plans the two
-    plan_crowd(Instance(siding, (Robot("r", "a", "c"), Robot("s", "c", "a"))), iterations=1, seconds=None)
+    swapping = Instance(siding, (Robot("r", "a", "c"), Robot("s", "c", "a")))
+    plan_crowd(swapping, iterations=1, seconds=None)
+    fleet = PlannedFleet(swapping)
+    carp(fleet, range(2))
+    plan_left_out(fleet, lambda: True, times=1)
     crowd = crowd_of(instance)
     are_right(crowd, landmarks_of(crowd))
     here = Plan("t", (Visit("c", 9, 10),))

@@ -153,8 +153,10 @@ class PlannedFleet:
         held = held[held != NONE]
         if held.size:
             self.call(lambda: passes.withdraw_all(self.native, held))
-            order = self.planned[~np.isin(self.planned, gone)]
-            self.hold(order, self.held[order])
+            left = self.held.copy()
+            left[gone] = NONE
+            order = self.planned[left[self.planned] != NONE]
+            self.hold(order, left[order])
 
     @property
     def places(self) -> tuple[Ints, list[RobotId]]:

@@ -5,8 +5,7 @@ has changed them. So each is planned again beside all others, until none arrives
 order in which none is late beside those before it, as far as there is one: what an audit asks.
 """
 
-from collections.abc import Callable, Iterable
-from itertools import takewhile
+from collections.abc import Callable
 
 import numpy as np
 
@@ -40,14 +39,6 @@ def _plan_all_again(fleet: PlannedFleet, goes_on: Callable[[], bool], now: int, 
                 return
             fleet.forget_old_records()
             is_better |= plan_again(fleet, robot, now, asked)
-
-
-def plan_each(fleet: PlannedFleet, robots: Iterable[int], goes_on: Callable[[], bool], asked: int) -> None:
-    """Plan robots one after the other, as long as it goes on, in place of all plans of the fleet."""
-    fleet.clear()
-    fleet.forget()
-    for robot in takewhile(lambda _: goes_on(), robots):
-        plan_again(fleet, robot, asked=asked)
 
 
 def plan_again(fleet: PlannedFleet, robot: int, now: int = 0, asked: int = ALONE) -> bool:

@@ -38,7 +38,7 @@ def test_no_robot_could_arrive_earlier_while_all_others_keep_their_plans(instanc
         assert best.visits[-1].enter >= plan.visits[-1].enter, plan.robot
 
 
-@pytest.mark.parametrize(("instance", "way"), [(tiled_instance(28, 2), "rounds"), (town(10, 5, 30, 1), "repair")])
+@pytest.mark.parametrize(("instance", "way"), [(tiled_instance(28, 2), "rounds"), (town(10, 10, 30, 1), "repair")])
 def test_no_plan_is_late_in_the_planning_order_if_there_is_one_in_which_none_is(instance: Instance, way: str) -> None:
     solution = WAYS[way](instance)
     assert audit(instance, solution, find_order=True).holds

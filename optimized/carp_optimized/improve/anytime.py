@@ -3,9 +3,9 @@
 Robots that move a step a tick (classical MAPF) are planned by `carp_optimized.improve.planning`, which looks at the
 clock after each few milliseconds. All others are planned by CARP, the shortest way first, as long as there is time; if
 some get no plan, once more, where each holds its start until it is planned. Then follow a repair and an annealing, if
-there is enough time for these, or else passes with those first that failed. In the end plans are settled, if there is
-time. A pass that falls behind, so that half of the time would be too short for it, goes on with greedy queries, and so
-do those after it. Nothing here is trusted: the law judges the plans.
+there is enough time for these. Else those left out take the way of others, who are planned again, and in the end plans
+are settled, if there is time. A pass that falls behind, so that half of the time would be too short for it, goes on
+with greedy queries, and so does what follows. Nothing here is trusted: the law judges the plans.
 """
 
 from collections.abc import Callable
@@ -18,11 +18,11 @@ from carp_optimized.crowds.crowd import crowd_of
 from carp_optimized.crowds.distances import landmarks_of, near
 from carp_optimized.fleet import PlannedFleet
 from carp_optimized.improve.annealing import BRIEF, anneal
+from carp_optimized.improve.ejection import plan_left_out
 from carp_optimized.improve.holding import plan_holding_starts
 from carp_optimized.improve.planning import Found, plan_crowd, time_of_visit
-from carp_optimized.improve.repair import plan_failed_first
 from carp_optimized.jit.kinds import Longs
-from carp_optimized.settling import plan_again, settled
+from carp_optimized.settling import plan_again, settle, settled
 from carp_optimized.state.arrays import ALONE, GREEDY, SOON
 from carp_optimized.state.limits import refuse_what_is_too_large
 from carp_spec import Instance, Solution
@@ -81,17 +81,19 @@ def plan_within(
         solution = carp_optimized.polish(instance, solution, iterations=iterations, seed=seed, advance=advance)
         return Found(settled(instance, solution), None)
     spent = clock() - started
-    left = seconds - visit * sum(len(each.visits) for each in solution.plans)
+    left = seconds - visit * fleet.visits
     if left > (1 + ENOUGH) * spent:
         solution = anneal(instance, solution, left - spent, seed=seed, advance=advance, clock=clock)
         return Found(solution, None)
     settles = left > AGAIN * spent
-    if solution.unplanned and left > spent:
-        ends = (left + spent) / 2 if settles else left
-        solution = plan_failed_first(instance, solution, lambda: clock() - started < ends, asked)
+
+    def until(end: float) -> Callable[[], bool]:
+        return lambda: clock() - started + visit * fleet.visits < end
+
+    plan_left_out(fleet, until((seconds + spent) / 2 if settles else seconds), asked)
     if settles:
-        solution = settled(instance, solution, lambda: clock() - started < left, SOON if asked == GREEDY else ALONE)
-    return Found(solution, None)
+        settle(fleet, until(seconds), asked=SOON if asked == GREEDY else ALONE)
+    return Found(Solution.of(instance, fleet.plans), None)
 
 
 def _first_plans(

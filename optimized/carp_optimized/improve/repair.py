@@ -1,11 +1,11 @@
-"""Plans for robots that a planner leaves out: in small groups, jointly among the other plans, or in another order.
+"""Plans for robots that a planner leaves out: in the way of others, or in small groups, jointly among the others.
 
-Where robots must let each other pass in a narrow place, the first one planned may leave no plan to the others, whatever
-the order. So a robot without a plan is planned together with those in its way
+First robots left out take the way of others, who are planned again (`carp_optimized.improve.ejection`). Where robots
+must let each other pass in a narrow place, the first one planned may leave no plan to the others, whatever the order.
+So the last few robots without a plan are planned together with those in their way
 (`carp_optimized.improve.joint_plans`). The group grows by the outside robot that its members would meet first if they
-were alone. Where no group is found, all robots are planned one after the other, pass after pass; those
-that a pass leaves out come first in the next. Crowds for which that fails too are moved tick by tick, if
-`carp_optimized.lacam.search` can. Nothing here is trusted: the law judges the plans.
+were alone. Crowds for which that fails too are moved tick by tick, if `carp_optimized.lacam.search` can. Nothing here
+is trusted: the law judges the plans.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -13,12 +13,11 @@ from dataclasses import replace
 from itertools import takewhile
 
 from carp_optimized.fleet import PlannedFleet
+from carp_optimized.improve.ejection import plan_left_out
 from carp_optimized.improve.joint_plans import joint_plans
 from carp_optimized.lacam.search import plans_by_steps
-from carp_optimized.orderings import carp
 from carp_optimized.planners import polish_while
-from carp_optimized.settling import plan_each, settled
-from carp_optimized.state.arrays import ALONE
+from carp_optimized.settling import settled
 from carp_spec import Instance, Plan, RobotId, Solution
 from carp_spec.joint_rules import JOINT_RULES
 from carp_spec.requests import sound_solution
@@ -27,17 +26,17 @@ LARGEST_GROUP = 4  # robots whose plans are searched for together
 ALL_STATES = 300
 """The search for all groups of a solution ends after this number of states."""
 FEW = 4
-"""At most this many robots left out are planned in groups: groups of more take longer than other orders."""
-ATTEMPTS = 4  # other first plans, each polished
+"""At most this many robots left out are planned in groups, which take long."""
+ATTEMPTS = 4
+TIMES = 16
+"""In an attempt, a robot left out takes the way of others at most so often."""
 ROUNDS = 200  # of a polish
-PASSES = 100  # of CARP for other first plans
 
 
 def repair(instance: Instance, solution: Solution, goes_on: Callable[[], bool] = lambda: True) -> Solution:
     """Plan the robots of a solution that have a path but no plan, as far as possible; plans of others may change.
 
-    An attempt plays rounds of `polish/...`, and plans robots jointly if few are left out. If some robots still are, the
-    next attempt begins with plans in another order, and the last with plans made tick by tick. In the end the plans are
+    Each attempt plays rounds of `polish/...` too, and plans robots jointly if few are left out. In the end plans are
     settled. It ends soon after it goes on no more. Raises `Refusal` for a solution that breaks a rule, and for numbers
     that are too large.
     """
@@ -48,9 +47,10 @@ def repair(instance: Instance, solution: Solution, goes_on: Callable[[], bool] =
     for seed in range(ATTEMPTS):
         if without_path.issuperset(solution.unplanned) or not goes_on():
             break
-        if seed > 0:
-            solution = plan_failed_first(instance, solution, goes_on)
-        solution = polish_while(instance, solution, goes_on, ROUNDS, seed)
+        fleet.clear()
+        fleet.commit_solution(solution)
+        plan_left_out(fleet, goes_on, times=TIMES, seed=seed)
+        solution = polish_while(instance, Solution.of(instance, fleet.plans), goes_on, ROUNDS, seed)
         if len(solution.unplanned) <= FEW + len(without_path):
             solution = repair_jointly(instance, solution, goes_on)
     if not without_path.issuperset(solution.unplanned) and goes_on():
@@ -59,29 +59,6 @@ def repair(instance: Instance, solution: Solution, goes_on: Callable[[], bool] =
         if found is not None:
             solution = polish_while(instance, Solution.of(instance, found), goes_on, ROUNDS, ATTEMPTS)
     return solution if solution == given or not goes_on() else settled(instance, solution, goes_on)
-
-
-def plan_failed_first(
-    instance: Instance, solution: Solution, goes_on: Callable[[], bool] = lambda: True, asked: int = ALONE
-) -> Solution:
-    """The plans of the best of some passes of CARP, each with the robots first that the one before left out.
-
-    The solution itself, if no pass plans more robots. A pass that is not over when it goes on no more counts too.
-    """
-    fleet = PlannedFleet(instance)
-    order = [fleet.index(robot) for robot in (*solution.unplanned, *solution.order)]
-    for _ in range(PASSES):
-        if asked == ALONE:
-            carp(fleet, order, goes_on)
-        else:
-            plan_each(fleet, order, goes_on, asked)
-        planned = {*fleet.order}
-        if len(planned) > len(solution.plans):
-            solution = Solution.of(instance, fleet.plans)
-        if len(planned) == len(order) or not goes_on():
-            break
-        order.sort(key=planned.__contains__)
-    return solution
 
 
 def repair_jointly(instance: Instance, solution: Solution, goes_on: Callable[[], bool] = lambda: True) -> Solution:

@@ -52,7 +52,7 @@ def test_robots_left_out_are_planned_again_in_the_rest_of_the_time(seed: int) ->
     fleet = Fleet(robots=12, seed=seed, after_goal="park")
     instance = grid_instance(Grid(width=5, height=5, map_seed=seed), fleet, Traits(duration=Range(1, 2)))
     ticks = count()
-    assert not plan_within(instance, seconds=90, clock=lambda: float(next(ticks))).unplanned
+    assert not plan_within(instance, seconds=150, clock=lambda: float(next(ticks))).unplanned
 
 
 @pytest.mark.parametrize("orders", ["goals", "pick-and-drop"])
@@ -61,6 +61,6 @@ def test_all_robots_get_plans_though_there_is_no_time_for_the_best(orders: Order
     fleet = Fleet(robots=60, seed=2, after_goal=after_goal, orders=orders)
     instance = grid_instance(Grid(width=12, height=12), fleet, Traits(duration=Range(1, 3)))
     ticks = count()
-    found = plan_within(instance, seconds=600, clock=lambda: float(next(ticks)))
+    found = plan_within(instance, seconds=900, clock=lambda: float(next(ticks)))
     assert judge(instance, found).valid
     assert not found.unplanned

@@ -1,4 +1,4 @@
-"""Robots that a planner leaves out get plans, in small groups or in another order, and the law judges them."""
+"""Robots that a planner leaves out get plans, in the way of others or in small groups, and the law judges them."""
 
 from dataclasses import replace
 from itertools import count
@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 
 from carp_optimized import plan
-from carp_optimized.improve.repair import plan_failed_first, repair, repair_jointly
+from carp_optimized.improve.repair import repair, repair_jointly
 from carp_spec import Carp, Group, Instance, Resource, ResourceGraph, Robot, Solution, judge
 from carproof import Following
 from carproof.generate import Fleet, Grid, grid_instance
@@ -72,7 +72,7 @@ def test_robots_that_swap_where_lanes_are_groups_are_planned_jointly(instance: I
     assert judge(instance, repaired).valid
 
 
-def test_a_robot_that_no_small_group_helps_is_planned_in_another_order() -> None:
+def test_a_robot_that_no_small_group_helps_takes_the_way_of_others() -> None:
     instance = grid_instance(Grid(map=0), Fleet(robots=100, seed=45))
     repaired = repair(instance, plan(instance))
     assert not repaired.unplanned
@@ -87,19 +87,6 @@ def test_a_repair_that_goes_on_no_more_ends_with_plans_that_are_no_worse(looks: 
     repaired = repair(instance, given, lambda: next(asked) < looks)
     assert judge(instance, repaired).valid
     assert len(repaired.unplanned) <= len(given.unplanned)
-
-
-def test_robots_that_failed_are_planned_first_and_a_robot_without_path_changes_nothing() -> None:
-    resources = tuple(Resource(id) for id in ("west", "east", "middle", "dead end", "island"))
-    graph = ResourceGraph(resources, (("middle", "west"), ("middle", "east"), ("middle", "dead end")))
-    robots = (Robot("r1", "west", "middle"), Robot("r2", "east", "dead end"), Robot("r3", "island", "west"))
-    instance = Instance(graph, robots, "park")
-    given = plan(instance, Carp())
-    assert given.order == ("r1",)
-    found = plan_failed_first(instance, given)
-    assert judge(instance, found).valid
-    assert (found.order, found.unplanned) == (("r2", "r1"), ("r3",))
-    assert plan_failed_first(instance, found) == found
 
 
 def test_a_pocket_is_used_up_to_its_capacity() -> None:
