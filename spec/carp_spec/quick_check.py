@@ -141,7 +141,7 @@ def _moves_do_not_meet(graph: ResourceGraph, source: "Longs", target: "Longs", t
     """Whether all are moves of the graph, and no two at a tick lead from areas into each other.
 
     A way leads from one area into another. Who moves within an area, a group of capacity 1, is alone there if groups
-    have room for all. So ways that a move makes there and back do not count.
+    have room for all, so that nobody moves out of it then.
     """
     import numpy as np  # noqa: PLC0415 - slow to load
 
@@ -174,7 +174,7 @@ def _moves_do_not_meet(graph: ResourceGraph, source: "Longs", target: "Longs", t
 def _ways_of(
     areas: Sequence[Sequence[int]], size: int, source: "Longs", target: "Longs", tick: "Longs"
 ) -> "tuple[Longs, Longs, Longs]":
-    """The ways of moves, but for those that a move makes there and back."""
+    """The ways of moves, but for those into areas where the robot is already."""
     import numpy as np  # noqa: PLC0415 - slow to load
 
     resource, area = _each_of(areas, np.arange(len(areas)))
@@ -182,8 +182,8 @@ def _ways_of(
     move, one = _each_of(areas, source)
     way, other = _each_of(areas, target[move])
     move, one = move[way], one[way]
-    is_back = _are_among(source[move] * size + other, inside) & _are_among(target[move] * size + one, inside)
-    return one[~is_back], other[~is_back], tick[move][~is_back]
+    is_there = _are_among(source[move] * size + other, inside)
+    return one[~is_there], other[~is_there], tick[move][~is_there]
 
 
 def _are_among(keys: "Longs", known: "Longs") -> "npt.NDArray[np.bool_]":
