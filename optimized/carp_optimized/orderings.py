@@ -11,14 +11,14 @@ from carp_optimized.state.arrays import NONE, UNASKED
 from carp_spec import Shuffled
 from carp_spec.permutations import shuffle, splitmix64
 
-PART = 64  # robots of a pass between two looks at a clock
+PART = 64  # robots of a pass in one compiled call
 
 
-def carp(fleet: PlannedFleet, order: Sequence[int], goes_on: Callable[[], bool] = lambda: True) -> None:
-    """Plan the robots in order, as if there were no plans yet, as long as it goes on."""
+def carp(fleet: PlannedFleet, order: Sequence[int]) -> None:
+    """Plan the robots in order, as if there were no plans yet."""
     fleet.clear()
     fleet.forget()
-    plan_in_order(fleet, np.array(order, np.int32), fleet.held, 0, goes_on)
+    plan_in_order(fleet, np.array(order, np.int32), fleet.held, 0)
 
 
 def shuffled(
@@ -62,18 +62,14 @@ def greedy(fleet: PlannedFleet, advance: Callable[[], None]) -> None:
         advance()
 
 
-def plan_in_order(
-    fleet: PlannedFleet, robots: Ints, followed: Ints, now: int, goes_on: Callable[[], bool] = lambda: True
-) -> Ints:
-    """Plan robots in order as long as it goes on, where there are no plans yet, and hold the plans found.
+def plan_in_order(fleet: PlannedFleet, robots: Ints, followed: Ints, now: int) -> Ints:
+    """Plan robots in order, where there are no plans yet, and hold the plans found.
 
     `followed` are the plans followed until now, by robot. A part at a time, so that little is done again where there
     was too little room.
     """
     plans = np.full(robots.size, NONE, np.int32)
     for first in range(0, robots.size, PART):
-        if not goes_on():
-            break
         part, found = robots[first : first + PART], plans[first : first + PART]
 
         def attempt(part: Ints = part, found: Ints = found, first: int = first) -> None:

@@ -141,7 +141,7 @@ def _moves_do_not_meet(graph: ResourceGraph, source: "Longs", target: "Longs", t
     """Whether all are moves of the graph, and no two at a tick lead from areas into each other.
 
     A way leads from one area into another. Who moves within an area, a group of capacity 1, is alone there if groups
-    have room for all, so that nobody moves out of it then.
+    have room for all, so that nobody moves out of it then: stays last a tick at least.
     """
     import numpy as np  # noqa: PLC0415 - slow to load
 

@@ -36,9 +36,10 @@ ROUNDS = 200  # of a polish
 def repair(instance: Instance, solution: Solution, goes_on: Callable[[], bool] = lambda: True) -> Solution:
     """Plan the robots of a solution that have a path but no plan, as far as possible; plans of others may change.
 
-    Each attempt plays rounds of `polish/...` too, and plans robots jointly if few are left out. In the end plans are
-    settled. It ends soon after it goes on no more. Raises `Refusal` for a solution that breaks a rule, and for numbers
-    that are too large.
+    In an attempt, those left out take the way of others, rounds of `polish/...` are played, and the last few are
+    planned jointly. If some still are left out, all are planned tick by tick. In the end plans are settled. It ends
+    soon after it goes on no more. Raises `Refusal` for a solution that breaks a rule, and for numbers that are too
+    large.
     """
     given = solution = sound_solution(instance, solution)
     fleet = PlannedFleet(instance)
